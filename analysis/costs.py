@@ -22,10 +22,9 @@ from typing import TypeVar
 
 from analysis.command import run
 from analysis.rows import write_rows
-from blocksim import Arch, bracket, check
+from blocksim import Arch, CircularArch, bracket, check
 from blocksim.arch.limit import least_thickness
 from blocksim.ask.methods import METHODS
-from blocksim.kinds.circular import CircularArch
 
 ARCHES = ((90, 0.7), (125, 0.9), (145, 1.6), (155, 3.0), (65, 0.6))
 """Half-angle [deg] and friction."""
@@ -64,8 +63,6 @@ def main(out: Path, *, quick: bool = False) -> list[Cost]:
             costs.append(_checks(method, arches))
             costs += [_brackets(method, arches, tol) for tol in TOLERANCES.get(method, COMMON)]
             sys.stderr.write(f"{method}\n")
-    out.mkdir(parents=True, exist_ok=True)
-    (out / "costs.md").write_text(table(costs), encoding="utf-8")
     write_rows(out / "costs.csv", [asdict(cost) for cost in costs])
     return costs
 
@@ -122,19 +119,5 @@ def _timed(ask: Callable[[], Said]) -> tuple[float, Said]:
             return median(seconds), said
 
 
-def table(costs: list[Cost]) -> str:
-    """Set the costs as a table in Markdown."""
-    lines = [
-        "| method | question | median [s] | longest [s] | error |",
-        "|---|---|---|---|---|",
-    ]
-    lines += [
-        f"| {each.method} | {each.question} | {each.median_s:.3g} | {each.longest_s:.3g} "
-        f"| {each.error:.1e} |"
-        for each in costs
-    ]
-    return "\n".join(lines) + "\n"
-
-
 if __name__ == "__main__":
-    run(main, table)
+    run(main, lambda costs: "\n".join(map(str, costs)))

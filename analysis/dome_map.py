@@ -9,14 +9,14 @@ meridians, usually given as 0.042 to 0.043 of the radius (Heyman 1967, Lau 2006)
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 from matplotlib.figure import Figure
 
 import blocksim
 from analysis.command import run
-from analysis.rows import write_rows
+from analysis.rows import FIGURES, read_kept, write_rows
 from blocksim import Dome, JointState
 from blocksim.common.files import make_folder
 from blocksim.view.drawing import save_figure
@@ -109,6 +109,17 @@ def figure(rows: list[Row]) -> Figure:
     axes.set_xlim(0.15, 0.75)
     axes.legend(frameon=False, loc="upper right")
     return drawn
+
+
+def drawn_again(path: Path) -> None:
+    """Draw what the rows that are kept say."""
+    names = [each.name for each in fields(Row)]
+    rows = [
+        Row(**{name: each[name] for name in names})
+        for each in read_kept(FIGURES / "dome_map.csv")
+    ]
+    with path.open("wb") as file:
+        save_figure(figure(rows), file, "png")
 
 
 def main(out: Path, *, quick: bool = False) -> list[Row]:

@@ -1,23 +1,19 @@
 """Twelve structures standing and falling.
 
 Question: does each shipped structure stand on one side of its known limit and fall on the
-other, all the way to the ground, and can it be seen? Each is drawn at rest a little inside its
-limit, with the forces that hold it, and let go a little beyond it by `direct`, to the end. The
-films are of these recordings. `four_engines.py` has one collapse by all engines.
+other, and can it be seen? Each is drawn at rest a little inside its limit, with the forces that
+hold it, and let go a little beyond it by `direct`.
 
 Expected: all stand and fall as their sources say, no energy is gained, blocks stay solid.
 
     python -m analysis.gallery OUT [--quick]
-
-Writes for each a picture and a film (NAME.png, NAME.mp4), and all of them on one sheet
-(gallery.png).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib as mpl
@@ -28,22 +24,14 @@ from matplotlib.patches import Polygon
 
 from analysis.command import run
 from analysis.drawing import few_colours
-from analysis.rows import write_rows
-from blocksim.ask.check import check
+from blocksim import Problem, Recording, check, simulate
 from blocksim.ask.families import family_of
-from blocksim.ask.simulate import simulate
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.problem import Problem
 from blocksim.engines.ground import ground_level
-from blocksim.kinds.known import load_known
-from blocksim.simulation.recording import Recording
+from blocksim.kinds.loading import load_known
 from blocksim.view.arrows import draw_forces, draw_loads
-from blocksim.view.drawing import clipped, save_figure
-from blocksim.view.film import Film
-from blocksim.view.sheet import sheet_of
-from blocksim.view.sheetfigure import SCREEN, sheet_figure
+from blocksim.view.drawing import clipped
 from blocksim.view.style import FONT, GROUND, INK, LIVE, QUIET, STONE
-from blocksim.view.video import write_film
 
 SHOWN = {
     "pointed_e0_25": ("Pointed arch", "least thickness {:.4f} m"),
@@ -76,104 +64,55 @@ TILTED = 1e-9
 """Gravity across the plane's vertical from which on it is tilted [g]."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Row:
-    """A structure as it stood and fell.
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """A structure inside its limit, with the forces that hold it, and its fall beyond.
 
-    Parameters
-    ----------
-    structure : str
-    limit : float
-        What is known of it.
-    inside, beyond : float
-        Where it was shown.
-    stood, fell : str
-        Verdicts of `direct` there.
-    moved : float
-        How far a block went [size].
-    overlap : float
-        Deepest overlap of blocks [size].
-    gain : float
-        Energy gained over what fell.
+    `verdicts` are those of `direct` to either side.
     """
 
-    structure: str
-    limit: float
-    inside: float
-    beyond: float
-    stood: str
-    fell: str
-    moved: float
-    overlap: float
-    gain: float
+    name: str
+    problem: Problem
+    forces: Array
+    fall: Recording
+    verdicts: tuple[str, str]
 
 
-@dataclass(frozen=True)
-class Result:
-    """All structures."""
-
-    rows: tuple[Row, ...]
-
-
-def main(out: Path, *, quick: bool = False) -> Result:
-    """Make pictures, films and the sheet; of two structures in a quick run."""
+def main(out: Path, *, quick: bool = False) -> list[Shown]:
+    """Draw the sheet; of two structures in a quick run."""
+    seen = [shown(name) for name in (QUICK if quick else SHOWN)]
     out.mkdir(parents=True, exist_ok=True)
-    height = 180 if quick else 720
-    rows: list[Row] = []
-    seen: list[tuple[str, Problem, Array, Recording]] = []
-    for name in QUICK if quick else SHOWN:
-        row, problem, forces, fall = shown(name)
-        rows.append(row)
-        seen.append((name, problem, forces, fall))
-        verdict = f"stands, by direct and limit ({100 * ASIDE:g} % inside its limit)"
-        picture = sheet_figure(sheet_of(problem, verdict=verdict, forces=forces), column=SCREEN)
-        with (out / f"{name}.png").open("wb") as file:
-            save_figure(picture, file, "png")
-        write_film(Film([fall], height=height), out / f"{name}.mp4")
     with (out / "gallery.png").open("wb") as file:
         few_colours(sheet(seen), file)
-    write_rows(out / "gallery.csv", [asdict(row) for row in rows])
-    return Result(tuple(rows))
+    return seen
 
 
-def shown(name: str) -> tuple[Row, Problem, Array, Recording]:
+def shown(name: str) -> Shown:
     """Let a structure stand inside its limit and fall beyond it."""
     known = load_known(name)
     expected = next(each for each in known.expect if each.over)
     rough = math.isinf(known.problem.mu)
     asked = known.problem.with_friction(FRICTION) if rough else known.problem
     family = family_of(asked, str(expected.over))
-    limit = float(expected.value or 0)
     sense = 1 if family.stands == "low" else -1
-    inside, beyond = limit * (1 - sense * ASIDE), limit * (1 + sense * ASIDE)
-    problem = family.at(inside)
-    stood = check(problem, method="direct")
-    fell = check(family.at(beyond), method="direct")
-    fall = simulate(family.at(beyond), method="direct", duration=LONGEST)
-    forces = check(problem, method="limit").forces
-    assert forces is not None  # noqa: S101
-    row = Row(
-        structure=name,
-        limit=limit,
-        inside=inside,
-        beyond=beyond,
-        stood=str(stood.verdict),
-        fell=str(fell.verdict),
-        moved=float(fall.displacement.max()),
-        overlap=fall.quality.penetration or 0.0,
-        gain=fall.quality.gain or 0.0,
+    inside, beyond = (
+        family.at(float(expected.value or 0) * (1 + side * sense * ASIDE)) for side in (-1, 1)
     )
-    return row, problem, forces, fall
+    stood, fell = (str(check(each, method="direct").verdict) for each in (inside, beyond))
+    fall = simulate(beyond, method="direct", duration=LONGEST)
+    forces = check(inside, method="limit").forces
+    assert forces is not None  # noqa: S101
+    return Shown(name, inside, forces, fall, (stood, fell))
 
 
-def sheet(seen: Sequence[tuple[str, Problem, Array, Recording]]) -> Figure:
+def sheet(seen: Sequence[Shown]) -> Figure:
     """Draw all structures: above as they stand, below as they fall."""
     columns = min(4, len(seen))
     lines = math.ceil(len(seen) / columns)
-    frames = [_falling(fall) for *_, fall in seen]
+    frames = [_falling(each.fall) for each in seen]
     boxes = [
-        _box(fall, (fall.poses[0], fall.poses[frame]))
-        for (*_, fall), frame in zip(seen, frames, strict=True)
+        _box(each.fall, (each.fall.poses[0], each.fall.poses[frame]))
+        for each, frame in zip(seen, frames, strict=True)
     ]
     tall = [float((high - low)[1] / (high - low)[0]) for low, high in boxes]
     heights = [min(1.2, max(tall[at : at + columns])) for at in range(0, len(tall), columns)]
@@ -183,11 +122,12 @@ def sheet(seen: Sequence[tuple[str, Problem, Array, Recording]]) -> Figure:
         figure = Figure(figsize=size, layout="constrained")
         ratios = [wide * each + more for each in heights for more in (0.6, 0.15)]
         axes = figure.subplots(2 * lines, columns, squeeze=False, height_ratios=ratios)
-        for place, (name, problem, forces, fall) in enumerate(seen):
+        for place, each in enumerate(seen):
+            problem, fall = each.problem, each.fall
             line, column = divmod(place, columns)
             above, below = axes[2 * line, column], axes[2 * line + 1, column]
-            title, words = SHOWN[name]
-            expected = next(each for each in load_known(name).expect if each.over)
+            title, words = SHOWN[each.name]
+            expected = next(one for one in load_known(each.name).expect if one.over)
             above.set_title(f"{title}\n", fontsize=11)
             above.annotate(words.format(expected.value), (0, 1), xytext=(0, 6),
                            xycoords="axes fraction", textcoords="offset points",
@@ -195,7 +135,7 @@ def sheet(seen: Sequence[tuple[str, Problem, Array, Recording]]) -> Figure:
             box = _shaped(boxes[place], heights[line])
             _blocks(above, problem, None, box)
             extent = 2 * problem.assembly.size
-            draw_forces(above, problem, forces, extent)
+            draw_forces(above, problem, each.forces, extent)
             _actions(above, problem)
             _blocks(below, fall.problem, _placed(fall, fall.poses[frames[place]]), box)
         for empty in axes.ravel():
@@ -288,16 +228,5 @@ def _blocks(
         axes.axhline(level, color=GROUND, lw=1, zorder=0.4)
 
 
-def table(result: Result) -> str:
-    """Return what was seen as a table."""
-    lines = [f"{'structure':24} {'limit':>10}  {'inside':10} {'beyond':10} {'moved':>6} gain"]
-    lines += [
-        f"{row.structure:24} {row.limit:10.6g}  {row.stood:10} {row.fell:10} "
-        f"{row.moved:6.2f} {row.gain:.1e}, overlap {row.overlap:.1e}"
-        for row in result.rows
-    ]
-    return "\n".join(lines)
-
-
 if __name__ == "__main__":
-    run(main, table)
+    run(main, lambda seen: "\n".join(f"{each.name}: {each.verdicts}" for each in seen))

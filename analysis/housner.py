@@ -14,6 +14,7 @@ little energy to pass its balance, which no impact adds to.
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
 from dataclasses import replace
@@ -24,11 +25,11 @@ from numpy.typing import NDArray
 
 from analysis.command import run
 from analysis.rows import write_rows
+from blocksim import Problem, structure_of
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.shaking import Shaking
 from blocksim.engines.direct import ENGINE, Blocks
-from blocksim.kinds.files import structure_of
 
 WIDTH, HEIGHTS = 1.0, (4.0, 2.0)
 SHAPES = ("half-sine", "full-sine")
@@ -49,11 +50,16 @@ def grid(height: float, count: int) -> tuple[Array, Array]:
     return np.geomspace(0.2, 2.0, count), least * np.geomspace(1.02, 5.0, count)
 
 
-def overturned(height: float, shape: str, durations: Array, amplitudes: Array) -> Told:
-    """Tell by the equation which pulses overturn a block, shape of both."""
+def rocking(height: float) -> tuple[float, float, float]:
+    """Angle of the diagonal [rad], 3 g/(4 R) [1/s^2], and the speed kept at an impact."""
     alpha, radius = math.atan2(WIDTH, height), math.hypot(WIDTH, height) / 2
     squared = 3 * STANDARD_GRAVITY / (4 * radius)
-    kept = max(0.0, 1 - 1.5 * math.sin(alpha) ** 2)
+    return alpha, squared, max(0.0, 1 - 1.5 * math.sin(alpha) ** 2)
+
+
+def overturned(height: float, shape: str, durations: Array, amplitudes: Array) -> Told:
+    """Tell by the equation which pulses overturn a block, shape of both."""
+    alpha, squared, kept = rocking(height)
     turns = math.pi * (2 if shape == "full-sine" else 1)
     angle, speed, now = (np.zeros_like(durations) for _ in range(3))
     falls = np.zeros(durations.shape, dtype=np.bool_)
@@ -95,7 +101,8 @@ def overturned(height: float, shape: str, durations: Array, amplitudes: Array) -
                 before = side * there > 0
                 one, low = np.where(before, cut, one), np.where(before, there, low)
                 two, high = np.where(before, two, cut), np.where(before, high, there)
-            length = np.where(lands, two, length)
+            # The last secant: one end of what it is between may never have moved.
+            length = np.where(lands, cut, length)
             after, rate = stepped(length, side)
             after, rate = np.where(lands, 0.0, after), np.where(lands, kept * rate, rate)
         # What lifts and comes down within a step has not lifted.
@@ -118,86 +125,75 @@ def _caught(angle: Array, speed: Array, alpha: float, squared: float) -> Told:
 def simulated(problem: Problem, alpha: float, squared: float) -> bool:
     """Tell by `direct`, at its usual step, whether a pulse overturns a block."""
     assert problem.shaking is not None  # noqa: S101
-    world = Blocks(problem, ENGINE.rule(problem.assembly))
+    settings, unit = ENGINE.rule(problem.assembly), problem.seconds
+    world = Blocks(problem, settings)
     world.hold(1)
-    unit = problem.seconds
-    for frame in range(1, round(LONGEST / unit / ENGINE.rule(problem.assembly).step)):
+    for frame in range(1, round(LONGEST / unit / settings.step)):
         world.advance(1)
         turn = float(world.poses()[0, 2])
         if abs(turn) > FALLEN - alpha:
             return True
-        over = frame * ENGINE.rule(problem.assembly).step * unit > problem.shaking.duration
+        over = frame * settings.step * unit > problem.shaking.duration
         spin = float(world.velocities[0, 2]) / unit
         if over and _caught(np.array(turn), np.array(spin), alpha, squared):
             return False
     return False
 
 
+def asked(height: float, shape: str, count: int) -> list[dict[str, object]]:
+    """Ask the pulses of a grid of one block, by the equation and by `direct`: rows."""
+    floor = {"id": 0, "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]], "fixed": True}
+    corners = [[0, 0], [WIDTH, 0], [WIDTH, height], [0, height]]
+    blocks = [floor, {"id": 1, "vertices": corners}]
+    problem = structure_of({"friction": 3.0, "blocks": blocks})
+    alpha, squared, _ = rocking(height)
+    durations, amplitudes = (each.ravel() for each in np.meshgrid(*grid(height, count)))
+    truth, less, more = (
+        overturned(height, shape, durations, share * amplitudes)
+        for share in (1.0, 1 - NEAR, 1 + NEAR)
+    )
+    near = (truth != less) | (truth != more)
+    rows: list[dict[str, object]] = []
+    for at, (duration, amplitude) in enumerate(
+        zip(durations.tolist(), amplitudes.tolist(), strict=True)
+    ):
+        pulse = Shaking(shape=shape, amplitude=amplitude, duration=duration)
+        rows.append(
+            {
+                "height_m": height,
+                "shape": shape,
+                "duration_s": round(duration, 6),
+                "amplitude_g": round(amplitude, 6),
+                "equation": bool(truth[at]),
+                "direct": simulated(replace(problem, shaking=pulse), alpha, squared),
+                "near": bool(near[at]),
+            }
+        )
+    return rows
+
+
 def main(out: Path, *, quick: bool = False, count: int = MANY) -> list[dict[str, object]]:
     """Ask all pulses, write rows, and return how many differ for each block and shape."""
     told: list[dict[str, object]] = []
     rows: list[dict[str, object]] = []
-    for height in HEIGHTS:
-        floor = {"id": 0, "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]], "fixed": True}
-        corners = [[0, 0], [WIDTH, 0], [WIDTH, height], [0, height]]
-        blocks = [floor, {"id": 1, "vertices": corners}]
-        problem = structure_of({"friction": 3.0, "blocks": blocks})
-        alpha, radius = math.atan2(WIDTH, height), math.hypot(WIDTH, height) / 2
-        squared = 3 * STANDARD_GRAVITY / (4 * radius)
-        for shape in SHAPES:
-            axes = grid(height, FEW if quick else count)
-            durations, amplitudes = (each.ravel() for each in np.meshgrid(*axes))
-            truth, less, more = (
-                overturned(height, shape, durations, share * amplitudes)
-                for share in (1.0, 1 - NEAR, 1 + NEAR)
-            )
-            near = (truth != less) | (truth != more)
-            started = time.process_time()
-            found = np.array(
-                [
-                    simulated(
-                        replace(
-                            problem,
-                            shaking=Shaking(
-                                shape=shape,
-                                amplitude=float(amplitude),
-                                duration=float(duration),
-                            ),
-                        ),
-                        alpha,
-                        squared,
-                    )
-                    for duration, amplitude in zip(durations, amplitudes, strict=True)
-                ]
-            )
-            told.append(
-                {
-                    "height_m": height,
-                    "shape": shape,
-                    "pulses": len(found),
-                    "overturn": int(truth.sum()),
-                    "near_the_boundary": int(near.sum()),
-                    "differ": int(((found != truth) & ~near).sum()),
-                    "differ_near": int(((found != truth) & near).sum()),
-                    "cpu_s": round(time.process_time() - started, 1),
-                }
-            )
-            asked: list[dict[str, object]] = [
-                {
-                    "height_m": height,
-                    "shape": shape,
-                    "duration_s": round(float(duration), 6),
-                    "amplitude_g": round(float(amplitude), 6),
-                    "equation": bool(a),
-                    "direct": bool(b),
-                    "near": bool(c),
-                }
-                for duration, amplitude, a, b, c in zip(
-                    durations, amplitudes, truth, found, near, strict=True
-                )
-            ]
-            rows += asked
-            write_rows(out / "housner.csv", rows)
+    for height, shape in itertools.product(HEIGHTS, SHAPES):
+        started = time.process_time()
+        found = asked(height, shape, FEW if quick else count)
+        rows += found
+        write_rows(out / "housner.csv.gz", rows)
+        differ = [each for each in found if each["direct"] != each["equation"]]
+        told.append(
+            {
+                "height_m": height,
+                "shape": shape,
+                "pulses": len(found),
+                "overturn": sum(each["equation"] is True for each in found),
+                "near_the_boundary": sum(each["near"] is True for each in found),
+                "differ": sum(not each["near"] for each in differ),
+                "differ_near": sum(each["near"] is True for each in differ),
+                "cpu_s": round(time.process_time() - started, 1),
+            }
+        )
     return told
 
 

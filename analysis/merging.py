@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -24,10 +24,7 @@ from analysis.command import run
 from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
 from analysis.structure_cases import COARSE, questions
-from blocksim import Verdict
-from blocksim.blocks.problem import Load, Problem
-from blocksim.kinds.files import structure_of
-from blocksim.limit import collapse
+from blocksim import Load, Problem, collapse, structure_of
 from blocksim.simulation.merging import LEAST, Merging
 from blocksim.simulation.observation import Observation, observe
 from tests.structure_cases import names
@@ -37,33 +34,6 @@ WALLS = ((1.6, 7), (2.4, 10), (3.6, 14))
 QUICK = ("oppenheim_28",)
 Asked = tuple[str, str, str]
 """Name, question, and the side: inside or outside of what stands."""
-
-
-@dataclass(frozen=True)
-class Result:
-    """Headline numbers.
-
-    Parameters
-    ----------
-    asked, merged : int
-        Questions, and those in which the last answer was by fewer bodies than blocks.
-    false, opened, closed : int
-        Answers of the reduced structure that are wrong; that are none where all blocks have
-        one; that are right where all blocks have none.
-    whole_s, merged_s : float
-        Processor time of all.
-    slowest : float
-        Largest ratio of the times, merged over all blocks, of what takes these over a second.
-    """
-
-    asked: int
-    merged: int
-    false: int
-    opened: int
-    closed: int
-    whole_s: float
-    merged_s: float
-    slowest: float
 
 
 def wall(length: float, courses: int) -> tuple[Problem, float]:
@@ -138,8 +108,8 @@ def main(
     engine: str = "pymunk",
     most: int = 70,
     held: bool = False,
-) -> Result:
-    """Run the study, write its rows, and return its numbers.
+) -> list[Row]:
+    """Run the study, and write its rows.
 
     Parameters
     ----------
@@ -168,30 +138,8 @@ def main(
         1,
     )
     write_rows(out / f"merging_{engine}.csv", rows)
-    return result(rows)
-
-
-def result(rows: list[Row]) -> Result:
-    """Sum up rows."""
-
-    def right(row: Row) -> Verdict:
-        return Verdict.STANDS if row["side"] == "inside" else Verdict.COLLAPSES
-
-    def ended(row: Row, which: str) -> bool:
-        return row[which] != Verdict.UNDECIDED
-
-    times = [(float(row["whole_s"] or 0), float(row["merged_s"] or 0)) for row in rows]
-    return Result(
-        asked=len(rows),
-        merged=sum(row["bodies"] != row["all_blocks"] for row in rows),
-        false=sum(ended(row, "merged") and row["merged"] != right(row) for row in rows),
-        opened=sum(ended(row, "whole") and not ended(row, "merged") for row in rows),
-        closed=sum(ended(row, "merged") and not ended(row, "whole") for row in rows),
-        whole_s=sum(whole for whole, _ in times),
-        merged_s=sum(merged for _, merged in times),
-        slowest=max((merged / whole for whole, merged in times if whole > 1), default=0.0),
-    )
+    return rows
 
 
 if __name__ == "__main__":
-    run(main)
+    run(main, lambda rows: "\n".join(map(str, rows)))

@@ -20,12 +20,12 @@ from functools import cache
 
 import numpy as np
 
+from blocksim import Mode
+from blocksim.arch.circular import ETA_MAX
 from blocksim.arch.limit.bulk import which_stand
-from blocksim.arch.modes import Mode
 from blocksim.arch.theory.arrays import least_thicknesses
 from blocksim.arch.theory.map import divide_friction
 from blocksim.arch.theory.regions import at_inner_sliding
-from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.assembly import Array
 
 SEED = 2024

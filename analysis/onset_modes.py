@@ -34,17 +34,15 @@ from matplotlib.lines import Line2D
 
 from analysis.command import run
 from analysis.mode_draws import critical_draws, draw
-from analysis.rows import write_rows
+from analysis.rows import FIGURES, read_kept, write_rows
 from analysis.saved_answers import Row, answers
-from blocksim.arch.circular import Arch
+from blocksim import Arch, CircularArch, Mode
+from blocksim.arch.circular import ETA_MAX
 from blocksim.arch.limit import least_thickness
 from blocksim.arch.limit.mechanism import mechanism
-from blocksim.arch.modes import Mode
-from blocksim.arch.observed import observed_mode
+from blocksim.arch.modes import observed_mode
 from blocksim.arch.theory import least_thickness as theory_of
 from blocksim.arch.theory.regions import landmarks
-from blocksim.ask.search import ETA_MAX
-from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.observation import observe
 from blocksim.sweeps.answers import version_of
 from blocksim.view.mapregions import draw_regions
@@ -72,24 +70,6 @@ class Fine:
     mu: float
     voussoirs: int
     eta: float | None = None
-
-
-@dataclass(frozen=True)
-class Result:
-    """Arches, and how many modes are as limit analysis and as theory say.
-
-    `rsr` counts arches that limit analysis calls rsr, `rsr_seen` those of them that the engine
-    does. `modes` counts (where drawn, by limit analysis, observed).
-    """
-
-    engine: str
-    arches: int
-    as_limit: int
-    as_theory: int
-    rsr: int
-    rsr_seen: int
-    undecided: int
-    modes: dict[tuple[str, str, str], int]
 
 
 def drawn(sweep: int, rsr: int, about: int, most: int) -> list[Fine]:
@@ -159,31 +139,19 @@ def main(
     about: int = 40,
     most: int = FINEST,
     processes: int = 2,
-) -> Result:
-    """Run the study or go on with it; write rows and figure and return the numbers."""
+) -> list[Row]:
+    """Run the study or go on with it; write rows and figure."""
     cases = drawn(10, 2, 1, FEWEST) if quick else drawn(sweep, rsr, about, most)
     path = out / f"onset_modes_{engine}.jsonl"
     rows = answers(path, cases, partial(ask, engine=engine), 1 if quick else processes)
-    return written(rows, path, engine)
-
-
-def written(rows: list[Row], path: Path, engine: str) -> Result:
-    """Write rows as a table and as a figure beside the file they are kept in; count them."""
     write_rows(path.with_suffix(".csv"), rows)
     _figure(rows, path.with_suffix(".png"), engine)
-    called = [row for row in rows if row["mode_limit"] == Mode.RSR]
-    return Result(
-        engine=engine,
-        arches=len(rows),
-        as_limit=sum(row["mode"] == row["mode_limit"] for row in rows),
-        as_theory=sum(row["mode"] == row["mode_theory"] for row in rows),
-        rsr=len(called),
-        rsr_seen=sum(row["mode"] == Mode.RSR for row in called),
-        undecided=sum(row["verdict"] == "undecided" for row in rows),
-        modes=dict(
-            Counter((str(r["drawn"]), str(r["mode_limit"]), str(r["mode"])) for r in rows)
-        ),
-    )
+    return rows
+
+
+def drawn_again(path: Path) -> None:
+    """Draw what the rows that are kept say."""
+    _figure(read_kept(FIGURES / "onset_modes_direct.csv.gz"), path, "direct")
 
 
 def _figure(rows: list[Row], path: Path, engine: str) -> None:
@@ -266,4 +234,4 @@ def _places(rows: list[Row]) -> tuple[list[float], list[float]]:
 
 
 if __name__ == "__main__":
-    run(main)
+    run(main, lambda rows: str(Counter((row["mode_limit"], row["mode"]) for row in rows)))

@@ -2,8 +2,9 @@
 
 Question: are the pictures in the pages those of today's code?
 
-Expected: each is drawn again by the command or the example beside it. Figures of studies are
-made by the studies, which take longer; `analysis/README.md` names them.
+Expected: each is drawn again by the command or the example beside it, or of the rows that are
+kept of a study. Figures that need more than rows (gallery, engines, spreading, the map, the
+chart, the referee) are made by their studies and commands; `analysis/README.md` names them.
 
     python -m analysis.pictures OUT [--quick]
 
@@ -12,17 +13,20 @@ Writes each picture to its own place below the folder: with `.` they are renewed
 
 from __future__ import annotations
 
+import io
 import os
 import runpy
 import shlex
 import subprocess
 import sys
 import tempfile
+from importlib import import_module
 from pathlib import Path
 
 import matplotlib as mpl
 
 from analysis.command import run
+from analysis.drawing import fewer_colours
 
 ROOT = Path(__file__).parents[1]
 ARCH = "--span 8 --rise 3 --thickness 0.45 --voussoirs 31 --friction-angle 35 --unit-weight 22"
@@ -36,6 +40,16 @@ COMMANDS = {
 """Pictures by the commands that draw them."""
 
 
+FROM_ROWS = {
+    "onset_modes_direct": "onset_modes",
+    "two_answers": "two_answers",
+    "dome_map": "dome_map",
+    "shaking": "shaking",
+    "oppenheim": "oppenheim",
+}
+"""Figures that are drawn of rows which are kept, and the studies that draw them."""
+
+
 def main(out: Path, quick: bool = False) -> list[str]:
     """Draw the pictures; in a quick run one of a command, one of an example, and the sketch."""
     made = [_sketch(out)]
@@ -46,6 +60,14 @@ def main(out: Path, quick: bool = False) -> list[str]:
     made += [
         _by_example(out / each.relative_to(ROOT), each.with_suffix(".py")) for each in examples
     ]
+    for name, study in list(FROM_ROWS.items())[:few]:
+        path = out / "analysis" / "figures" / f"{name}.png"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        import_module(f"analysis.{study}").drawn_again(path)
+        whole = io.BytesIO(path.read_bytes())
+        with path.open("wb") as file:
+            fewer_colours(whole, file)
+        made.append(path)
     return [str(each.relative_to(out)) for each in made]
 
 

@@ -1,10 +1,10 @@
 """Random problems at the edges of what is asked: every verdict is held to its proof.
 
-Random problems (`random_problems`) and piles of boxes up to a million times unlike each other
-are changed: their coordinates are rounded to 3 to 12 decimals, weights spread over nine
-decades, joints get a friction of their own from 0 to without bound, and dead loads that do not
-turn act off centre. Each verdict by limit analysis has to have a proof that `blocksim.verify`
-accepts, which shares no code with what found it.
+Random problems (`tests/random_problems.py`) and piles of boxes up to a million times unlike
+each other are changed: their coordinates are rounded to 3 to 12 decimals, weights spread over
+nine decades, joints get a friction of their own from 0 to without bound, and dead loads that
+do not turn act off centre. Each verdict by limit analysis has to have a proof that
+`blocksim.verify` accepts, which shares no code with what found it.
 
 `python -m analysis.random_proofs OUT` writes `random_proofs.csv.gz`, a row a problem.
 """
@@ -23,16 +23,22 @@ import numpy as np
 from numpy.random import Generator
 
 from analysis.command import run
-from analysis.random_problems import Case, drawn
 from analysis.rows import write_rows
-from blocksim.arch.circular import Arch
-from blocksim.ask.check import check
-from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
-from blocksim.blocks.problem import Load, Problem
-from blocksim.common.errors import InputError
-from blocksim.kinds.circular import CircularArch
+from blocksim import (
+    Arch,
+    Assembly,
+    Block,
+    CircularArch,
+    InputError,
+    Joint,
+    Load,
+    Problem,
+    check,
+)
+from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.limit.proof import proof_record
 from blocksim.verify import verify
+from tests.random_problems import Case, drawn
 
 SEED = 35
 MOST = 16
@@ -51,18 +57,6 @@ class Row:
     verified: bool
     margin: float
     seconds: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class Result:
-    """What a run came to."""
-
-    asked: int
-    proved: int
-    refused: int
-    """Proofs that `verify` does not accept."""
-    open: int
-    stands: int
 
 
 def edge(index: int) -> tuple[str, Problem]:
@@ -217,24 +211,20 @@ def asked(index: int) -> Row:
     )
 
 
-def main(out: Path, *, quick: bool = False) -> Result:
+def main(out: Path, *, quick: bool = False) -> list[Row]:
     """Ask 10,000 problems, or 40."""
     rows = [asked(index) for index in range(40 if quick else 10_000)]
     write_rows(out / "random_proofs.csv.gz", [vars(row) for row in rows])
-    return counted(rows)
+    return rows
 
 
-def counted(rows: list[Row]) -> Result:
+def counted(rows: list[Row]) -> str:
     """Count what was said."""
+    refused = sum(row.proved and not row.verified for row in rows)
+    proved = sum(row.verified for row in rows)
     told = Counter(row.verdict for row in rows)
-    return Result(
-        asked=len(rows),
-        proved=sum(row.verified for row in rows),
-        refused=sum(row.proved and not row.verified for row in rows),
-        open=sum(not row.proved for row in rows),
-        stands=told["stands"],
-    )
+    return f"{len(rows)} asked, {proved} proved, {refused} refused: {told}"
 
 
 if __name__ == "__main__":
-    run(main)
+    run(main, counted)

@@ -2,13 +2,14 @@
 
 Question: is any answer of `limit`, `direct`, pymunk or pybullet false, how many are open, and
 does an answer hang on anything but the question? Arches of the map, all kinds of structures,
-walls and assemblies of polygons (`random_problems.py`) are asked about at 0.5 to 2 times the
-load, tilt, friction, thickness or overhang at which they fall, 0.1 % from it at the nearest.
+walls and assemblies of polygons (`tests/random_problems.py`) are asked about at 0.5 to 2 times
+the load, tilt, friction, thickness or overhang at which they fall, 0.1 % from it at least.
 
-Truth is none of the methods' own: `certificates.py` proves by plain statics that forces of
-equilibrium exist, or that none do. That they exist means that blocks *can* rest: where joints
-slide friction may let them move, too. So "collapses" is counted as false where they exist, and
-what was then seen to move is counted apart (`moves_too`). The ratio only says where to ask.
+Truth is none of the methods' own: `tests/certificates.py` proves by plain statics that forces
+of equilibrium exist, or that none do. That they exist means that blocks *can* rest: where
+joints slide friction may let them move, too. So "collapses" is counted as false where they
+exist, and what was then seen to move is counted apart (`moves_too`). The ratio only says where
+to ask.
 
 Critical values of arches of the map come from the statics of voussoirs, those of columns and
 stacks from closed forms, others from the linear programme; `expected` says on which side of it
@@ -36,15 +37,14 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from analysis.certificates import certificate
 from analysis.command import run
-from analysis.random_problems import GROUPS, Case, drawn, mirrored, renumbered
 from analysis.rows import provenance, write_rows
 from analysis.saved_answers import Row, answers
-from blocksim import Problem, check
-from blocksim.ask.check import check as check_problem
-from blocksim.common.errors import BlocksimError
-from blocksim.kinds.circular import CircularArch
+from blocksim import BlocksimError, CircularArch, Problem, check
+from blocksim import check as check_problem
+from tests.certificates import certificate
+from tests.images import mirrored, renumbered
+from tests.random_problems import GROUPS, Case, drawn
 
 PROBLEMS = 10_000
 MOST = {"": 24, "pymunk": 20, "pybullet": 12}
@@ -81,8 +81,6 @@ class Result:
     problems, unproved : int
     unexpected : int
         Proved to do other than the critical value says.
-    nearest : float
-        Least distance of a ratio from 1.
     told : dict of str to Told
     same : dict of str to (int, int)
         For each way of asking again, answers that are the same, of how many.
@@ -91,7 +89,6 @@ class Result:
     problems: int
     unproved: int
     unexpected: int
-    nearest: float
     told: dict[str, Told]
     same: dict[str, tuple[int, int]]
 
@@ -267,7 +264,6 @@ def summary(rows: Sequence[Row], compared: Sequence[Row]) -> Result:
         problems=len(rows),
         unproved=len(rows) - len(proved),
         unexpected=sum(row["expected"] != row["proved"] for row in proved),
-        nearest=min(abs(float(row["ratio"] or 0) - 1) for row in rows),
         told={method: told_by(method, proved) for method in METHODS},
         same=same,
     )

@@ -11,6 +11,7 @@ import platform
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 import blocksim
 from blocksim import __version__
@@ -18,6 +19,8 @@ from blocksim.common.files import make_folder, write_whole
 from blocksim.report.tables import processor
 
 CODE = Path(blocksim.__file__).parent
+FIGURES = Path(__file__).parent / "figures"
+"""Where rows and figures of studies are kept."""
 
 
 def code_hash(folder: Path = CODE) -> str:
@@ -59,3 +62,22 @@ def write_rows(path: Path, rows: Sequence[Mapping[str, object]]) -> None:
     # Without a time, the same rows are the same file.
     whole = gzip.compress(written, mtime=0) if path.suffix == ".gz" else written
     write_whole(path, lambda file: file.write(whole))
+
+
+def read_kept(path: Path) -> list[dict[str, Any]]:
+    """Read rows that `write_rows` wrote: numbers, truths, None where a cell is empty, text."""
+    text = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
+    table = csv.DictReader(io.StringIO(text.decode()))
+    return [{name: _value(cell) for name, cell in row.items()} for row in table]
+
+
+def _value(cell: str) -> Any:
+    plain = {"": None, "True": True, "False": False}
+    if cell in plain:
+        return plain[cell]
+    for kind in (int, float):
+        try:
+            return kind(cell)
+        except ValueError:
+            continue
+    return cell

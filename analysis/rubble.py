@@ -21,36 +21,33 @@ for which others fall. One that flies higher than it was carried has been thrown
 
 from __future__ import annotations
 
-import csv
 import itertools
 import math
 import time
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 
 from analysis.command import run
 from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
-from blocksim.arch.circular import Arch
+from blocksim import (
+    Arch,
+    CircularArch,
+    Load,
+    Problem,
+    Recording,
+    collapse,
+    simulate,
+    structure_of,
+)
 from blocksim.arch.limit import least_thickness
-from blocksim.ask.simulate import simulate
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
-from blocksim.blocks.problem import Load, Problem
-from blocksim.engines import ENGINES
 from blocksim.engines.energy import energy
 from blocksim.engines.solids import Solids, width
-from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.files import structure_of
-from blocksim.limit import collapse
-from blocksim.simulation.recording import Recording
-from blocksim.view.style import FONT
 
 SEED = 16
 COUNT = 20
@@ -68,25 +65,6 @@ class Case:
 
     number: int
     kind: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Result:
-    """Headline numbers of an engine."""
-
-    engine: str
-    collapses: int
-    rested: int
-    overlap: float
-    own_overlap: float
-    gain: float
-    own_gain: float
-    sunk: float
-    rise: float
-    thrown: float
-    solid: int
-    tame: int
-    cpu_s: float
 
 
 def cases(count: int) -> list[Case]:
@@ -281,67 +259,15 @@ def main(
     engine: str = "direct",
     count: int = COUNT,
     processes: int = 1,
-) -> Result:
-    """Let all fall, write rows and the figure of every engine with rows here."""
+) -> list[Row]:
+    """Let all fall, and write rows."""
     asked = cases(2 if quick else count)
     rows = answers(
         out / f"rubble_{engine}.jsonl", asked, partial(ask, engine=engine), processes
     )
     write_rows(out / f"rubble_{engine}.csv", rows)
-    _figure(out)
-
-    def worst(name: str) -> float:
-        return max(float(row[name] or 0) for row in rows)
-
-    return Result(
-        engine=engine,
-        collapses=len(rows),
-        rested=sum(bool(row["rested"]) for row in rows),
-        overlap=worst("overlap"),
-        own_overlap=worst("own_overlap"),
-        gain=worst("gain"),
-        own_gain=worst("own_gain"),
-        sunk=worst("sunk"),
-        rise=worst("rise"),
-        thrown=worst("thrown"),
-        solid=sum(float(row["overlap"] or 0) < ALLOWED for row in rows),
-        tame=sum(
-            max(float(row["gain"] or 0), float(row["own_gain"] or 0)) < GAIN for row in rows
-        ),
-        cpu_s=worst("cpu_s"),
-    )
-
-
-def _read(out: Path) -> Iterator[tuple[str, list[dict[str, str]]]]:
-    for engine in ENGINES:
-        path = out / f"rubble_{engine}.csv"
-        if path.exists():
-            with path.open(newline="", encoding="utf-8") as file:
-                yield engine, list(csv.DictReader(file))
-
-
-def _figure(out: Path) -> None:
-    """Draw overlap and energy of every collapse, a colour and a marker for each engine."""
-    with mpl.rc_context(FONT):
-        figure = Figure(figsize=(9, 3.6), layout="constrained")
-        left, right = figure.subplots(1, 2)
-        for name, rows in _read(out):
-            look = {"color": ENGINES[name].colour, "marker": ENGINES[name].marker}
-            for axes, column in ((left, "overlap"), (right, "gain")):
-                found = [100 * max(float(row[column] or 0), 1e-8) for row in rows]
-                numbers = [int(row["number"]) + 1 for row in rows]
-                axes.semilogy(numbers, found, ls="none", ms=5, label=name, **look)
-        for axes, bound, title in (
-            (left, ALLOWED, "deepest overlap, of a block's width [%]"),
-            (right, GAIN, "energy gained, of what fell [%]"),
-        ):
-            axes.axhline(100 * bound, color="0.5", lw=0.8)
-            axes.set_title(title)
-            axes.set_xlabel("collapse")
-        handles, labels = left.get_legend_handles_labels()
-        figure.legend(handles, labels, frameon=False, ncols=4, loc="outside lower center")
-        figure.savefig(out / "rubble.png", dpi=150)
+    return rows
 
 
 if __name__ == "__main__":
-    run(main)
+    run(main, lambda rows: "\n".join(map(str, rows)))

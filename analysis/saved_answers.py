@@ -21,20 +21,9 @@ def answers(
 ) -> list[Row]:
     """Ask about every case that a file has no row of yet.
 
-    Parameters
-    ----------
-    path : Path
-        JSON lines, one a case; delete it after a change of what answers.
-    cases : sequence
-        Whatever tells one from another in its `repr`.
-    ask : callable
-        Case to row, in another process unless `processes` is 1.
-    processes : int
-
-    Returns
-    -------
-    list of Row
-        In the order of the cases, each with the keys of `provenance` besides its own.
+    `path` has JSON lines, one a case: delete it after a change of what answers. Cases may be
+    anything that their `repr` tells apart. `ask` is called in other processes unless
+    `processes` is 1. Rows are in the order of the cases, with the keys of `provenance`, too.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     kept = _read(path)

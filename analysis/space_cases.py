@@ -10,20 +10,19 @@ from __future__ import annotations
 
 import csv
 import itertools
-import json
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import blocksim
 from analysis.command import run
 from analysis.rows import provenance, write_rows
-from blocksim import SpatialProblem, Verdict
-from blocksim.blocks.space.files import problem_in_space
+from blocksim import Problem, Verdict
 from blocksim.common.files import make_folder
+from tests.space_cases import NAMES, asked, case
 
-CASES = Path(__file__).parents[1] / "tests" / "structures" / "space"
 BESIDE = {
     "limit": (0.01, 0.001),
     "direct": (0.01, 0.001),
@@ -31,7 +30,6 @@ BESIDE = {
     "mujoco": (0.01,),
 }
 QUICK = ("block_topples_20", "tower_113")
-NAMES = {Verdict.STANDS: True, Verdict.COLLAPSES: False, Verdict.UNDECIDED: None}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,32 +62,31 @@ class Row:
     evidence: str
 
 
-def asked(name: str, method: str) -> Iterator[tuple[float, SpatialProblem, bool]]:
-    """Give the share, the problem and whether it stands, of each question on a case."""
-    case = json.loads((CASES / f"{name}.json").read_text(encoding="utf-8"))
-    problem, value = problem_in_space(case["scene"]), case["expected"]["value"]
-    if case["question"] == "stands":
-        yield 0.0, problem, bool(value)
+def questions(name: str, method: str) -> Iterator[tuple[float, Problem[Any], Verdict]]:
+    """Give the share, the problem and what is known of it, of each question on a case."""
+    if case(name)["question"] == "stands":
+        ((problem, known),) = asked(name, 0.0)
+        yield 0.0, problem, known
         return
     for beside in BESIDE[method]:
-        yield -beside, problem.with_load(value * (1 - beside)), True
-        yield beside, problem.with_load(value * (1 + beside)), False
+        for side, (problem, known) in zip((-beside, beside), asked(name, beside), strict=True):
+            yield side, problem, known
 
 
-def row(case: str, method: str, beside: float, problem: SpatialProblem, *, stands: bool) -> Row:
+def row(name: str, method: str, beside: float, problem: Problem[Any], known: Verdict) -> Row:
     """Ask one question."""
     began = time.process_time()
     answer = blocksim.check(problem, method=method)
     seconds = time.process_time() - began
-    found = NAMES[answer.verdict]
+    is_open, is_right = answer.verdict is Verdict.UNDECIDED, answer.verdict is known
     return Row(
-        case=case,
+        case=name,
         method=method,
         beside=beside,
         blocks=len(problem.assembly.blocks),
-        known=str(Verdict.STANDS if stands else Verdict.COLLAPSES),
+        known=str(known),
         found=str(answer.verdict),
-        right="open" if found is None else "right" if found is stands else "false",
+        right="open" if is_open else "right" if is_right else "false",
         seconds=round(seconds, 2),
         evidence=answer.reason,
     )
@@ -137,13 +134,14 @@ def main(out: Path, *, quick: bool = False, method: str = "", only: str = "") ->
     if path.exists():
         with path.open(encoding="utf-8", newline="") as file:
             rows = list(csv.DictReader(file))
-    known = {(each["case"], each["method"], float(each["beside"])) for each in rows}
-    names = QUICK if quick else sorted(each.stem for each in CASES.glob("*.json"))
+    there = {(each["case"], each["method"], float(each["beside"])) for each in rows}
     made = provenance()
-    for each, name in itertools.product([method] if method else BESIDE, names):
-        for beside, problem, stands in asked(name, each):
-            if only in name and (name, each, beside) not in known:
-                found = asdict(row(name, each, beside, problem, stands=stands)) | made
+    for each, name in itertools.product(
+        [method] if method else BESIDE, QUICK if quick else NAMES
+    ):
+        for beside, problem, known in questions(name, each):
+            if only in name and (name, each, beside) not in there:
+                found = asdict(row(name, each, beside, problem, known)) | made
                 rows.append({key: str(value) for key, value in found.items()})
                 write_rows(path, rows)
     return table(rows)

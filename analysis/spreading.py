@@ -28,11 +28,10 @@ from matplotlib.patches import Polygon
 
 from analysis.command import run
 from analysis.rows import write_rows
+from blocksim import JointState, structure_of
 from blocksim.ask.spread import Spreading
-from blocksim.blocks.joints import JointState
-from blocksim.kinds.files import structure_of
 from blocksim.limit.displaced import Frame
-from blocksim.limit.spreading import lying
+from blocksim.limit.spreading import displaced_at
 from blocksim.view.style import FONT, GROUND, INK, MECHANISM, PAPER, QUIET, STONE
 from tests.structure_cases import case
 
@@ -190,7 +189,7 @@ def _between(spreading: Spreading, shares: Sequence[float]) -> list[Frame]:
 def _draw(axes: Axes, spreading: Spreading, frame: Frame) -> None:
     """Draw the blocks where they lie, with their hinges, over where they were built."""
     problem = spreading.problem
-    now = lying(problem, replace(spreading.path, frames=(frame,)), frame.value)
+    now = displaced_at(problem, replace(spreading.path, frames=(frame,)), frame.value)
     for block in problem.assembly.blocks:
         axes.add_patch(Polygon(block.vertices, fc="none", ec=QUIET, lw=0.4, alpha=0.6))
     for block in now.assembly.blocks:
@@ -218,7 +217,7 @@ def _curve(axes: Axes, result: Result) -> None:
     known = [row for row in result.rows if row.known]
     at = [float(row.arch.split()[-1]) for row in known]
     axes.plot(at, [50 * (row.known or 0) for row in known], "o", ms=9, mfc="none", mec=INK,
-              label="known (tests/structures/cases)")  # fmt: skip
+              label="independent calculation")  # fmt: skip
     axes.plot(at, [50 * (row.low or math.nan) for row in known], "x", color="#0072B2", ms=7,
               label="direct, supports moved slowly")  # fmt: skip
     axes.set_xlabel("thickness over radius")
@@ -227,18 +226,5 @@ def _curve(axes: Axes, result: Result) -> None:
     axes.legend(frameon=False)
 
 
-def table(result: Result) -> str:
-    """Return the rows as a table."""
-    head = f"{'arch':22} {'known':>12} {'continuation':>14} {'gives way':>10}"
-    said = [f"{head} {'low':>10} {'high':>10} {'s':>6}"]
-    said += [
-        f"{row.arch:22} {row.known or math.nan:12.9f} {row.limit:14.9f} {row.gives:10.7f} "
-        f"{row.low or math.nan:10.7f} {row.high or math.nan:10.7f} {row.seconds_direct:6.1f}"
-        for row in result.rows
-    ]
-    said.append(f"off by at most {result.worst_known:.1e}, direct by {result.worst_direct:.1e}")
-    return "\n".join(said)
-
-
 if __name__ == "__main__":
-    run(main, table)
+    run(main, lambda found: "\n".join(map(str, found.rows)))

@@ -26,12 +26,9 @@ from scipy.optimize import bisect
 from analysis.command import run
 from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
-from blocksim import Verdict
+from blocksim import InputError, Load, Problem, Verdict, collapse, equilibrium
 from blocksim.ask.methods import choose
-from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.structure import structure_of
-from blocksim.common.errors import InputError
-from blocksim.limit import collapse, equilibrium
 from blocksim.simulation.observation import observe
 from tests.structure_cases import case, names, scenes
 
@@ -335,21 +332,14 @@ def _blocks(name: str) -> int:
 
 
 def table(result: Result) -> str:
-    """Return the lines as a table, and what they come to."""
-    head = f"{'case':32} {'question':24} {'value':>13} {'by limit':>13} {'error':>8}  "
-    said = [head + f"{'inside':10} {'outside':10} {'s':>7}"]
-    said += [
-        f"{line.case:32} {line.question:24} {line.expected:13.9g} {line.limit:13.9g} "
-        f"{line.error:8.1e}  {line.inside:10} {line.outside:10} {line.seconds:7.2f}"
-        for line in result.lines
-    ]
+    """Return the lines, and what they come to."""
     cases = len({line.case for line in result.lines})
-    said.append(
+    said = (
         f"{cases} cases, {len(result.lines)} questions: limit off by at most "
         f"{result.worst_error:.1e}; {result.engine} asked {result.asked} times, "
         f"{result.false} false, {result.undecided} undecided, {result.refused} refused"
     )
-    return "\n".join(said)
+    return "\n".join([*map(str, result.lines), said])
 
 
 if __name__ == "__main__":

@@ -10,17 +10,13 @@ Coulomb's law lets it also start to move, and where does that band end? The end 
 
 It is asked just above the least thickness. A band that begins further up is not seen.
 
-Then `direct` is let go. 1 % below the end of the band it begins with what contacts do in the
-motion, without a push: it moves on and falls. 1 % above it is pushed in random directions, with
-a speed of 1e-3: it comes to rest. It is pushed along the motion as well.
-
 Expected: both ends agree to 0.1 %. Without sliding in the mode there is no band. It takes an
 odd number of voussoirs, whose keystone slides, and friction of about cot(alpha/n).
 
-    python -m analysis.two_answers OUT [--pushes N] [--quick]
+    python -m analysis.two_answers OUT [--quick]
 
-Rows are kept in OUT/two_answers.jsonl as they come, and written as two_answers.csv and
-two_answers_pushed.csv; the figure is two_answers.png.
+Rows are kept in OUT/two_answers.jsonl as they come, and written as two_answers.csv; the figure
+is two_answers.png.
 """
 
 from __future__ import annotations
@@ -32,17 +28,15 @@ from pathlib import Path
 import numpy as np
 
 from analysis.command import run
-from analysis.rows import write_rows
+from analysis.rows import FIGURES, read_kept, write_rows
 from analysis.saved_answers import Row, answers
 from analysis.two_answers_map import draw
-from blocksim.arch.circular import Arch, Weight
+from blocksim import Arch, CircularArch, Problem
+from blocksim.arch.circular import Weight
 from blocksim.arch.limit.statics import least_thickness
-from blocksim.blocks.assembly import SUPPORT, displacement
-from blocksim.blocks.problem import Problem
+from blocksim.blocks.assembly import SUPPORT
 from blocksim.engines.contact import ContactProblem, Solution
 from blocksim.engines.contact.coulomb import OPEN, SLIDES_DOWN, SLIDES_UP, STICKS
-from blocksim.engines.direct import ENGINE
-from blocksim.kinds.circular import CircularArch
 from blocksim.limit.starting import LEAST_POWER, Start, may_start, rates_of
 from blocksim.view.drawing import save_figure
 
@@ -55,8 +49,6 @@ WIDTH = 1e-3
 THICKEST = 2.0
 SECONDS = 900.0
 NOTHING, SOLVED = 1e-9, 1e-9
-SPEED, FAR, LONG = 1e-3, 0.05, 30.0
-"""Speed of a push, way that counts as gone on, and time watched [sqrt(r/g)]."""
 SLIDING = (80.0, 0.25), (90.0, 0.3), (90.0, 0.35), (100.0, 0.42), (115.0, 0.68), (125.0, 0.84)
 """Half-angles and friction at which many arches slide in their mode."""
 BETWEEN = (
@@ -67,11 +59,6 @@ BETWEEN = (
     (8, 147.5, 2.6), (8, 150.0, 3.0), (8, 155.0, 3.0), (8, 155.0, 4.0),
 )  # fmt: skip
 """More wide arches, also of an even number: voussoirs, half-angle and friction."""
-PUSHED = 46
-"""So many arches are pushed at random, the first with an end."""
-BELOW, BEYOND = -1, -2
-ASIDE = 0.01
-"""How far from the end of the band arches are pushed."""
 
 
 @dataclass(frozen=True)
@@ -92,15 +79,6 @@ class Case:
             weight=self.weight,
         )
         return CircularArch.of(arch, self.mu).problem()
-
-
-@dataclass(frozen=True)
-class Push:
-    """An arch of the map that is pushed: along its motion (`BELOW`, `BEYOND`) or at random."""
-
-    case: Case
-    edge: float
-    index: int
 
 
 def cases() -> list[Case]:
@@ -179,16 +157,14 @@ def follow(case: Case, eta: float, start: Start) -> float:
     return eta if solution is None else follow_on(case, eta, solution)
 
 
-def follow_on(
-    case: Case, eta: float, solution: Solution, least_power: float = LEAST_POWER
-) -> float:
+def follow_on(case: Case, eta: float, solution: Solution) -> float:
     """Follow a solution in motion to the largest thickness that the solver finds it at."""
     step = STEP
     while step - 1 > FINE:
         further = eta * step
         after = None
         if further < THICKEST:
-            after = settled(case.problem(further), solution, least_power)
+            after = settled(case.problem(further), solution)
         if after is None:
             step = 1 + (step - 1) / 2
         else:
@@ -216,9 +192,7 @@ def begun(problem: Problem, start: Start) -> Solution:
     )
 
 
-def settled(
-    problem: Problem, start: Solution, least_power: float = LEAST_POWER
-) -> Solution | None:
+def settled(problem: Problem, start: Solution) -> Solution | None:
     """Solve the contacts at rest beginning with a motion; None where that ends in rest.
 
     That is where the power of the loads, over that of the fall without contacts, is least.
@@ -230,58 +204,21 @@ def settled(
         own = np.flatnonzero(blocks != SUPPORT)
         rows[own, :, 3 * side : 3 * side + 3] = rates[own, :, blocks[own]][:, [0, 1, 2, 2]]
     contact = ContactProblem(joints.before, joints.after, masses, problem.friction)
-    free = problem.pull() / masses
+    free = problem.applied_forces() / masses
     found = contact.solve(rows, np.zeros(rows.shape[:2]), free, start)
-    power = float((problem.pull() * found.acceleration).sum())
-    moves = power > least_power * float((problem.pull() * free).sum())
+    power = float((problem.applied_forces() * found.acceleration).sum())
+    moves = power > LEAST_POWER * float((problem.applied_forces() * free).sum())
     return found if found.residual <= SOLVED and moves else None
 
 
-def pushed(push: Push) -> Row:
-    """Push an arch along its motion, or at random, on one side of the end of the band."""
-    case, along = push.case, push.index < 0
-    below = push.edge * (1 - ASIDE)
-    eta = below if push.index == BELOW else push.edge * (1 + ASIDE)
-    problem = case.problem(eta)
-    world = ENGINE.build(problem, ENGINE.rule(problem.assembly))
-    built = world.poses()
-    if along:
-        start = may_start(case.problem(below), seconds=SECONDS)
-        if start.accelerations is None:
-            raise ValueError("nothing moves")
-        way = start.accelerations
-        if push.index == BELOW:
-            # No push: what the contacts do is the first guess, as if they had done so before.
-            world._solution = begun(problem, start)
-    else:
-        way = np.random.default_rng((push.index, case.voussoirs)).normal(size=built.shape)
-    if push.index != BELOW:
-        world.push(way * SPEED / displacement(way, problem.assembly))
-    far = 0.0
-    steps = round(LONG / ENGINE.rule(problem.assembly).step)
-    for _ in range(steps // 100):
-        world.advance(100)
-        far = float(displacement(world.poses() - built, problem.assembly))
-        still = float(displacement(world.velocities, problem.assembly)) < NOTHING
-        if far > FAR or still:
-            break
-    return {
-        "voussoirs": case.voussoirs,
-        "weight": case.weight,
-        "alpha_deg": case.alpha_deg,
-        "mu": case.mu,
-        "eta": eta,
-        "below": push.index == BELOW,
-        "along": along,
-        "index": push.index,
-        "way": far,
-        "goes_on": far > FAR,
-        "residual": world.quality().residual,
-    }
+def drawn_again(path: Path) -> None:
+    """Draw what the rows that are kept say."""
+    with path.open("wb") as file:
+        save_figure(draw(read_kept(FIGURES / "two_answers.csv")), file, "png")
 
 
-def main(out: Path, *, pushes: int = 1000, processes: int = 2, quick: bool = False) -> str:
-    """Draw the map of the band, and push arches on both sides of its end."""
+def main(out: Path, *, processes: int = 2, quick: bool = False) -> str:
+    """Draw the map of the band."""
     asked = cases()
     if quick:
         asked = [Case(7, "centreline", 155.0, 3.0), Case(5, "centreline", 90.0, 0.5)]
@@ -289,40 +226,18 @@ def main(out: Path, *, pushes: int = 1000, processes: int = 2, quick: bool = Fal
     write_rows(out / "two_answers.csv", rows)
     with (out / "two_answers.png").open("wb") as file:
         save_figure(draw(rows), file, "png")
-    ends = [
-        (case, float(row["eta_followed"]))
-        for case, row in zip(asked, rows, strict=True)
-        if row["eta_followed"] and row["eta_rests"]
-    ]
-    asked_pushes = [Push(*end, side) for end in ends for side in (BELOW, BEYOND)]
-    at_random = ends[:PUSHED]
-    asked_pushes += [Push(*at_random[each % len(at_random)], each) for each in range(pushes)]
-    kept = out / "two_answers_pushed.jsonl"
-    run_on = answers(kept, asked_pushes, pushed, processes)
-    write_rows(out / "two_answers_pushed.csv", run_on)
-    return summary(rows, run_on)
-
-
-def summary(rows: list[Row], run_on: list[Row]) -> str:
-    """Say in words what came out."""
     band = [row for row in rows if row["band"]]
     apart = [
         float(row["eta_rests"]) / float(row["eta_followed"]) - 1
         for row in band
         if row["eta_rests"]
     ]
-    along = [row["goes_on"] for row in run_on if row["below"]]
-    beyond = [row["goes_on"] for row in run_on if row["along"] and not row["below"]]
-    aside = [row["goes_on"] for row in run_on if not row["along"]]
     widest = max((float(r["eta_moves"]) / float(r["eta_limit"]) - 1 for r in band), default=0.0)
     return "\n".join(
         [
             f"{len(rows)} arches, {len(band)} with a band, the widest of {widest:.1%}",
             f"unknown: {sum(row['band'] is None for row in rows)}",
             f"both ends within {max(apart, default=0.0):.3%} at {len(apart)} arches",
-            f"begun with the motion below: {sum(along)} of {len(along)} go on",
-            f"pushed along it above: {sum(beyond)} of {len(beyond)} go on",
-            f"pushed at random above: {sum(aside)} of {len(aside)} go on",
         ]
     )
 

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from analysis.saved_answers import Row
+from blocksim import Mode
 from blocksim.arch.circular import Weight
-from blocksim.arch.modes import Mode
 from blocksim.view.mapregions import Section, draw_regions
 from blocksim.view.mapshapes import ANGLE
 from blocksim.view.style import INK

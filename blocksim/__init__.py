@@ -3,147 +3,106 @@
 from __future__ import annotations
 
 import importlib as _importlib
-from typing import Any as _Any
-from typing import cast as _cast
 
 from blocksim.common import interrupts
 from blocksim.common import shown as _shown
-from blocksim.common.version import __version__
+from blocksim.common.version import __version__ as __version__
 
 if interrupts.is_program():
     # Before the imports that commands make.
     interrupts.install()
 
 # The package is above all its rooms, and names who shows things of theirs in a notebook.
-_shown.show_by(lambda: _cast(_Any, _importlib.import_module("blocksim.notebook")))
+_shown.show_by(lambda: _importlib.import_module("blocksim.notebook"))
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from blocksim.arch.circular import Arch
-    from blocksim.arch.modes import Mode
-    from blocksim.ask.bracket import Bracket, bracket
-    from blocksim.ask.bulk import Told, check_many
-    from blocksim.ask.check import Check, check
-    from blocksim.ask.citing import cite
-    from blocksim.ask.options import Options
-    from blocksim.ask.simulate import simulate
-    from blocksim.blocks.assembly import Assembly, Block, Joint
-    from blocksim.blocks.given import Body, GivenJoint
-    from blocksim.blocks.joints import JointState
-    from blocksim.blocks.made import Built, Fill, Made
-    from blocksim.blocks.maker import Maker, Table, count, metres, parameter
-    from blocksim.blocks.problem import Load, Problem
-    from blocksim.blocks.space.assembly import FaceJoint, Solid, assembly_in_space
-    from blocksim.blocks.space.extruded import extruded
-    from blocksim.blocks.space.maker import SolidMaker
-    from blocksim.blocks.space.problem import SpatialProblem
-    from blocksim.common.errors import BlocksimError, InputError, MachineError, MissingPart
-    from blocksim.kinds.arcade import Arcade
-    from blocksim.kinds.basket import BasketHandleArch
-    from blocksim.kinds.catenary import CatenaryArch
-    from blocksim.kinds.circular import CircularArch
-    from blocksim.kinds.column import Column
-    from blocksim.kinds.corbeldome import CorbelDome
-    from blocksim.kinds.dome import Dome
-    from blocksim.kinds.elliptic import EllipticArch
-    from blocksim.kinds.files import load_in_space, load_structure, structure_of
-    from blocksim.kinds.flat import FlatArch
-    from blocksim.kinds.loading import load
-    from blocksim.kinds.offers import Offers
-    from blocksim.kinds.parabolic import ParabolicArch
-    from blocksim.kinds.pointed import PointedArch
-    from blocksim.kinds.portal import Portal
-    from blocksim.kinds.recorded import load_recording
-    from blocksim.kinds.returnwall import ReturnWall
-    from blocksim.kinds.rubble import Rubble
-    from blocksim.kinds.skewarch import BarrelVault, SkewArch
-    from blocksim.kinds.stack import Stack
-    from blocksim.kinds.tower import Tower
-    from blocksim.kinds.wall import Wall
-    from blocksim.limit import collapse, equilibrium
-    from blocksim.simulation.recording import Recording
-    from blocksim.simulation.verdict import Evidence, Verdict
-    from blocksim.sweeps.run import sweep
-
-__all__ = [
-    "Arcade",
-    "Arch",
-    "Assembly",
-    "BarrelVault",
-    "BasketHandleArch",
-    "Block",
-    "BlocksimError",
-    "Body",
-    "Bracket",
-    "Built",
-    "CatenaryArch",
-    "Check",
-    "CircularArch",
-    "Column",
-    "CorbelDome",
-    "Dome",
-    "EllipticArch",
-    "Evidence",
-    "FaceJoint",
-    "Fill",
-    "FlatArch",
-    "GivenJoint",
-    "InputError",
-    "Joint",
-    "JointState",
-    "Load",
-    "MachineError",
-    "Made",
-    "Maker",
-    "MissingPart",
-    "Mode",
-    "Offers",
-    "Options",
-    "ParabolicArch",
-    "PointedArch",
-    "Portal",
-    "Problem",
-    "Recording",
-    "ReturnWall",
-    "Rubble",
-    "SkewArch",
-    "Solid",
-    "SolidMaker",
-    "SpatialProblem",
-    "Stack",
-    "Table",
-    "Told",
-    "Tower",
-    "Verdict",
-    "Wall",
-    "__version__",
-    "assembly_in_space",
-    "bracket",
-    "check",
-    "check_many",
-    "cite",
-    "collapse",
-    "count",
-    "equilibrium",
-    "extruded",
-    "load",
-    "load_in_space",
-    "load_recording",
-    "load_structure",
-    "metres",
-    "parameter",
-    "simulate",
-    "structure_of",
-    "sweep",
-]
+    from blocksim.arch.circular import Arch as Arch
+    from blocksim.arch.modes import Mode as Mode
+    from blocksim.ask.answer import Check as Check
+    from blocksim.ask.bracket import Bracket as Bracket
+    from blocksim.ask.bracket import bracket as bracket
+    from blocksim.ask.bulk import Told as Told
+    from blocksim.ask.bulk import check_many as check_many
+    from blocksim.ask.cases import Case as Case
+    from blocksim.ask.cases import Cases as Cases
+    from blocksim.ask.cases import Factors as Factors
+    from blocksim.ask.cases import check_cases as check_cases
+    from blocksim.ask.check import check as check
+    from blocksim.ask.doctor import cite as cite
+    from blocksim.ask.fragility import Fragility as Fragility
+    from blocksim.ask.fragility import fragility as fragility
+    from blocksim.ask.options import Options as Options
+    from blocksim.ask.simulate import simulate as simulate
+    from blocksim.blocks.assembly import Assembly as Assembly
+    from blocksim.blocks.assembly import Block as Block
+    from blocksim.blocks.assembly import Joint as Joint
+    from blocksim.blocks.given import Body as Body
+    from blocksim.blocks.given import GivenJoint as GivenJoint
+    from blocksim.blocks.joints import JointState as JointState
+    from blocksim.blocks.made import Built as Built
+    from blocksim.blocks.made import Fill as Fill
+    from blocksim.blocks.made import Made as Made
+    from blocksim.blocks.maker import Maker as Maker
+    from blocksim.blocks.maker import Table as Table
+    from blocksim.blocks.maker import count as count
+    from blocksim.blocks.maker import metres as metres
+    from blocksim.blocks.maker import parameter as parameter
+    from blocksim.blocks.polygons import assembly_of_polygons as assembly_of_polygons
+    from blocksim.blocks.problem import Load as Load
+    from blocksim.blocks.problem import Problem as Problem
+    from blocksim.blocks.space.assembly import FaceJoint as FaceJoint
+    from blocksim.blocks.space.assembly import Solid as Solid
+    from blocksim.blocks.space.assembly import SpatialAssembly as SpatialAssembly
+    from blocksim.blocks.space.extruded import extruded as extruded
+    from blocksim.blocks.space.joining import assembly_in_space as assembly_in_space
+    from blocksim.blocks.space.maker import SolidMaker as SolidMaker
+    from blocksim.common.errors import BlocksimError as BlocksimError
+    from blocksim.common.errors import InputError as InputError
+    from blocksim.common.errors import MachineError as MachineError
+    from blocksim.common.errors import MissingPart as MissingPart
+    from blocksim.kinds.arcade import Arcade as Arcade
+    from blocksim.kinds.basket import BasketHandleArch as BasketHandleArch
+    from blocksim.kinds.catenary import CatenaryArch as CatenaryArch
+    from blocksim.kinds.circular import CircularArch as CircularArch
+    from blocksim.kinds.column import Column as Column
+    from blocksim.kinds.corbeldome import CorbelDome as CorbelDome
+    from blocksim.kinds.dome import Dome as Dome
+    from blocksim.kinds.elliptic import EllipticArch as EllipticArch
+    from blocksim.kinds.files import load_structure as load_structure
+    from blocksim.kinds.files import structure_of as structure_of
+    from blocksim.kinds.flat import FlatArch as FlatArch
+    from blocksim.kinds.groinvault import GroinVault as GroinVault
+    from blocksim.kinds.loading import load as load
+    from blocksim.kinds.loading import load_recording as load_recording
+    from blocksim.kinds.offers import Offers as Offers
+    from blocksim.kinds.parabolic import ParabolicArch as ParabolicArch
+    from blocksim.kinds.pointed import PointedArch as PointedArch
+    from blocksim.kinds.portal import Portal as Portal
+    from blocksim.kinds.returnwall import ReturnWall as ReturnWall
+    from blocksim.kinds.rubble import Rubble as Rubble
+    from blocksim.kinds.skewarch import BarrelVault as BarrelVault
+    from blocksim.kinds.skewarch import SkewArch as SkewArch
+    from blocksim.kinds.stack import Stack as Stack
+    from blocksim.kinds.tower import Tower as Tower
+    from blocksim.kinds.wall import Wall as Wall
+    from blocksim.limit import collapse as collapse
+    from blocksim.limit import equilibrium as equilibrium
+    from blocksim.simulation.recording import Recording as Recording
+    from blocksim.simulation.verdict import Evidence as Evidence
+    from blocksim.simulation.verdict import Verdict as Verdict
+    from blocksim.sweeps.run import sweep as sweep
 
 _PLACES = {
     "arch.circular": ("Arch",),
     "arch.modes": ("Mode",),
     "ask.bracket": ("Bracket", "bracket"),
     "ask.bulk": ("Told", "check_many"),
-    "ask.check": ("Check", "check"),
-    "ask.citing": ("cite",),
+    "ask.cases": ("Case", "Cases", "Factors", "check_cases"),
+    "ask.answer": ("Check",),
+    "ask.check": ("check",),
+    "ask.doctor": ("cite",),
+    "ask.fragility": ("Fragility", "fragility"),
     "ask.options": ("Options",),
     "ask.simulate": ("simulate",),
     "blocks.assembly": ("Assembly", "Block", "Joint"),
@@ -151,52 +110,45 @@ _PLACES = {
     "blocks.joints": ("JointState",),
     "blocks.made": ("Built", "Fill", "Made"),
     "blocks.maker": ("Maker", "Table", "count", "metres", "parameter"),
+    "blocks.polygons": ("assembly_of_polygons",),
     "blocks.problem": ("Load", "Problem"),
-    "blocks.space.assembly": ("FaceJoint", "Solid", "assembly_in_space"),
-    "blocks.space.problem": ("SpatialProblem",),
+    "blocks.space.assembly": ("FaceJoint", "Solid", "SpatialAssembly"),
     "common.errors": ("BlocksimError", "InputError", "MachineError", "MissingPart"),
     "simulation.recording": ("Recording",),
     "simulation.verdict": ("Evidence", "Verdict"),
-    "kinds.arcade": ("Arcade",),
-    "kinds.basket": ("BasketHandleArch",),
-    "kinds.catenary": ("CatenaryArch",),
-    "kinds.circular": ("CircularArch",),
-    "kinds.column": ("Column",),
-    "kinds.elliptic": ("EllipticArch",),
-    "kinds.files": ("load_in_space", "load_structure", "structure_of"),
-    "kinds.flat": ("FlatArch",),
-    "kinds.loading": ("load",),
+    "kinds.files": ("load_structure", "structure_of"),
+    "kinds.loading": ("load", "load_recording"),
     "kinds.offers": ("Offers",),
-    "kinds.parabolic": ("ParabolicArch",),
-    "kinds.pointed": ("PointedArch",),
-    "kinds.portal": ("Portal",),
-    "kinds.recorded": ("load_recording",),
-    "kinds.rubble": ("Rubble",),
-    "kinds.stack": ("Stack",),
-    "kinds.wall": ("Wall",),
-    "kinds.corbeldome": ("CorbelDome",),
-    "kinds.dome": ("Dome",),
-    "kinds.returnwall": ("ReturnWall",),
-    "kinds.skewarch": ("BarrelVault", "SkewArch"),
-    "kinds.tower": ("Tower",),
     "blocks.space.extruded": ("extruded",),
+    "blocks.space.joining": ("assembly_in_space",),
     "blocks.space.maker": ("SolidMaker",),
     "limit": ("collapse", "equilibrium"),
     "sweeps.run": ("sweep",),
 }
-"""Where the public names are; each is loaded when it is first used."""
+"""Where public names are, besides those of kinds; each is loaded when it is first used."""
+
+
+def _places() -> dict[str, str]:
+    """Return the module of each public name."""
+    from blocksim.kinds import PLACES
+
+    kinds = (place.partition(".") for place in PLACES.values())
+    places = {name: f"kinds.{file}" for file, _, name in kinds}
+    return places | {name: place for place, names in _PLACES.items() for name in names}
 
 
 def __getattr__(name: str) -> object:
-    """Load a public name."""
-    for place, names in _PLACES.items():
-        if name in names:
-            found = getattr(_importlib.import_module(f"blocksim.{place}"), name)
-            globals()[name] = found
-            return found
+    """Load a public name; `__all__` is the list of them."""
+    places = _places()
+    if name == "__all__":
+        return sorted({*places, "__version__"})
+    if name in places:
+        found = getattr(_importlib.import_module(f"blocksim.{places[name]}"), name)
+        globals()[name] = found
+        return found
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
     """List the public names, loaded or not."""
-    return sorted({*globals(), *__all__})
+    return sorted({*globals(), *_places()})

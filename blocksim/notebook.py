@@ -16,13 +16,11 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any, cast
 
 from blocksim.arch.answers import ArchBracket
-from blocksim.arch.circular import Arch
+from blocksim.arch.circular import ETA_MAX, Arch
 from blocksim.arch.theory import least_thickness
 from blocksim.ask.bracket import Bracket
 from blocksim.ask.check import Check, check
-from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.blocks.structure import structure_record
 from blocksim.common.files import AnyPath, json_text
 from blocksim.common.words import printable
@@ -38,7 +36,6 @@ from blocksim.report.problems import (
 )
 from blocksim.report.recordings import recording_lines, recording_record
 from blocksim.simulation.recording import Recording
-from blocksim.simulation.space import SpatialRecording
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,50 +53,24 @@ THIN = 0.02
 def dict_of(shown: object) -> dict[str, Any]:
     """Return a thing as JSON has it.
 
-    Parameters
-    ----------
-    shown : Arch, Problem, Check, Bracket or Recording
-
     Returns
     -------
     dict
         Of an answer what `--json` prints; of a problem its structure file, in space what
         answers say of it; of a recording what it shows, without its poses.
     """
-    found: dict[type, Callable[[Any], Mapping[str, object]]] = {
-        Arch: _arch_record,
-        Problem: structure_record,
-        SpatialProblem: problem_record,
-        Check: check_record,
-        Bracket: bracket_record,
-        Recording: recording_record,
-    }
-    return json.loads(json_text(found[type(shown)](shown)))
+    record, _, _ = _KNOWN[type(shown)]
+    return json.loads(json_text(record(shown)))
 
 
 def lines_of(shown: object) -> list[str]:
     """Return a thing in words, as the command line prints it: a head and labelled lines."""
-    found: dict[type, Callable[[Any], list[str]]] = {
-        Arch: lambda arch: [_arch_words(arch), *arch_size_lines(arch)],
-        Problem: _problem_lines,
-        SpatialProblem: _problem_lines,
-        Check: check_lines,
-        Bracket: bracket_lines,
-        Recording: lambda run: [
-            f"Recording by {run.engine}",
-            *(f"  motion  {line.strip()}" for line in _recording_lines(run)),
-            f"  what    {described(run.problem)}",
-        ],
-    }
-    return found[type(shown)](shown)
+    _, lines, _ = _KNOWN[type(shown)]
+    return lines(shown)
 
 
 def figure_of(shown: object) -> Figure:
     """Draw a thing.
-
-    Parameters
-    ----------
-    shown : Arch, Problem, Check, Bracket or Recording
 
     Returns
     -------
@@ -107,27 +78,15 @@ def figure_of(shown: object) -> Figure:
         Of a check with its forces or its mechanism; of the least thickness of an arch the
         arch of that thickness; of a recording its last frame.
     """
-    found: dict[type, Callable[[Any], Figure]] = {
-        Arch: _arch_figure,
-        Problem: _problem_figure,
-        SpatialProblem: _spatial_figure,
-        Check: _check_figure,
-        Bracket: _bracket_figure,
-        Recording: _recording_figure,
-    }
-    return found[type(shown)](shown)
+    _, _, figure = _KNOWN[type(shown)]
+    return figure(shown)
 
 
 def film_of(shown: object, path: AnyPath, **options: Any) -> None:
     """Write a recording as a film; options are those of `blocksim.view.video.render`."""
-    from blocksim.view.video import render, write_film
+    from blocksim.view.video import render
 
-    if isinstance(shown, SpatialRecording):
-        from blocksim.view.solidfilm import SolidFilm
-
-        write_film(SolidFilm(shown, **options), path)
-        return
-    render([cast(Recording, shown)], path, **options)
+    render([cast("Recording[Any]", shown)], path, **options)
 
 
 @lru_cache(maxsize=1)
@@ -156,7 +115,7 @@ def html_of(shown: object) -> str:
     return f"<div><strong>{head.strip()}</strong><table>{rows}</table>{svg_of(shown)}</div>"
 
 
-def _problem_lines(problem: Problem | SpatialProblem) -> list[str]:
+def _problem_lines(problem: Problem[Any]) -> list[str]:
     return [
         problem.title or "Structure",
         f"  what    {described(replace(problem, title=''))}",
@@ -164,8 +123,14 @@ def _problem_lines(problem: Problem | SpatialProblem) -> list[str]:
     ]
 
 
-def _recording_lines(recording: Recording) -> list[str]:
-    return recording_lines(recording, recording.problem.length_name)
+def _recording_lines(run: Recording) -> list[str]:
+    said = recording_lines(run, run.problem.length_name)
+    motion = [f"  motion  {line.strip()}" for line in said]
+    return [f"Recording by {run.engine}", *motion, f"  what    {described(run.problem)}"]
+
+
+def _arch_lines(arch: Arch) -> list[str]:
+    return [_arch_words(arch), *arch_size_lines(arch)]
 
 
 def _arch_words(arch: Arch) -> str:
@@ -200,18 +165,20 @@ def _arch_figure(arch: Arch) -> Figure:
     )
 
 
-def _problem_figure(problem: Problem) -> Figure:
+def _problem_record(problem: Problem[Any]) -> Mapping[str, object]:
+    return problem_record(problem) if problem.in_space else structure_record(problem)
+
+
+def _problem_figure(problem: Problem[Any]) -> Figure:
+    if problem.in_space:
+        return _check_figure(check(problem))
     from blocksim.view.sheet import sheet_of
 
     return _drawn(sheet_of(problem))
 
 
-def _spatial_figure(problem: SpatialProblem) -> Figure:
-    return _check_figure(check(problem))
-
-
 def _check_figure(answer: Check[Any]) -> Figure:
-    if isinstance(answer.problem, SpatialProblem):
+    if answer.problem.in_space:
         from blocksim.view.solidfigure import solid_figure
 
         return solid_figure(answer)
@@ -236,7 +203,7 @@ def _arch_bracket_figure(of: ArchBracket, answer: Bracket) -> Figure:
 def _bracket_figure(answer: Bracket) -> Figure:
     if answer.arch is not None:
         return _arch_bracket_figure(answer.arch, answer)
-    from blocksim.view.rangefigure import range_figure
+    from blocksim.view.curvefigure import range_figure
 
     return range_figure(answer)
 
@@ -245,3 +212,20 @@ def _recording_figure(recording: Recording) -> Figure:
     from blocksim.view.film import Film
 
     return Film([recording], height=TALL).figure()
+
+
+_KNOWN: dict[
+    type,
+    tuple[
+        Callable[[Any], Mapping[str, object]],
+        Callable[[Any], list[str]],
+        Callable[[Any], Figure],
+    ],
+] = {
+    Arch: (_arch_record, _arch_lines, _arch_figure),
+    Problem: (_problem_record, _problem_lines, _problem_figure),
+    Check: (check_record, check_lines, _check_figure),
+    Bracket: (bracket_record, bracket_lines, _bracket_figure),
+    Recording: (recording_record, _recording_lines, _recording_figure),
+}
+"""How each thing is told, as JSON and in words, and drawn."""

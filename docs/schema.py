@@ -8,7 +8,7 @@ from inspect import getdoc
 from pathlib import Path
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints, is_typeddict
 
-from blocksim.report.schema import BracketRecord, CheckRecord, CrossingRecord
+from blocksim.report.schema import BracketRecord, CasesRecord, CheckRecord, CrossingRecord
 
 PLACE = Path(__file__).resolve().parent / "schema" / "answers.json"
 PLAIN = {
@@ -21,9 +21,10 @@ PLAIN = {
 
 
 def schema() -> dict[str, Any]:
-    """Return the schema: an answer is a check, a bracket, or a bracket of a vehicle."""
+    """Return the schema: an answer is a check, cases, a bracket, or that of a vehicle."""
     found: dict[str, Any] = {}
-    answers = [_of(each, found) for each in (CheckRecord, BracketRecord, CrossingRecord)]
+    kinds = (CheckRecord, CasesRecord, BracketRecord, CrossingRecord)
+    answers = [_of(each, found) for each in kinds]
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "What blocksim check --json and blocksim bracket --json print",

@@ -7,6 +7,7 @@ makes them again and compares, so that no table says anything else than the code
 from __future__ import annotations
 
 import csv
+import math
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -90,7 +91,11 @@ def _error(method: str, error: float) -> str:
 
 def _kinds(_: str) -> str:
     rows = [
-        [f"`{kind.name}`", kind.about, ", ".join(f"`{each}`" for each in fields_of(kind))]
+        [
+            f"`{kind.name}`",
+            kind.about + " (in space)" * kind.in_space,
+            ", ".join(f"`{each}`" for each in fields_of(kind)),
+        ]
         for kind in KINDS.values()
     ]
     return table(["kind", "what it is", "parameters"], rows)
@@ -104,39 +109,6 @@ def _parameters(name: str) -> str:
         cells = [known.said(getattr(usual, each)), known.allowed, known.about, over]
         rows.append([f"`{each}`", *(cell.replace("|", "\\|") for cell in cells)])
     return table(["parameter", "if left out", "may be", "what it is", "`--over`"], rows)
-
-
-def _walls(_: str) -> str:
-    """Walls that friction may let move below the push at which they can rest."""
-    found = list[list[str]]()
-    rows = _rows("walls_two_answers")
-    for number in sorted({row["wall"] for row in rows}):
-        mine = [row for row in rows if row["wall"] == number and row["moves"]]
-        best = min(mine, key=lambda row: float(row["moves"]))
-        known = best["known"] and f"{float(best['known']):.6g}"
-        cells = [f"{float(best['limit']):.5f}", f"{float(best['moves']):.5f}", known or "-"]
-        below = 1 - float(best["moves"]) / float(best["limit"])
-        found.append([number, best["blocks"], *cells, f"{100 * below:.1f} %"])
-    return table(
-        ["wall", "blocks", "can rest up to", "may move from", "known before", "below"], found
-    )
-
-
-def _keystone(_: str) -> str:
-    """How wide the band of the keystone's motion is, for each number of voussoirs."""
-    found = list[list[str]]()
-    rows = [row for row in _rows("keystone") if row["rest_holds"] == "True"]
-    for number in sorted({int(row["voussoirs"]) for row in rows}):
-        mine = [row for row in rows if int(row["voussoirs"]) == number]
-        least = min(float(row["mu"]) for row in mine)
-        wide = max(float(row["eta_end"]) / float(row["eta_limit"]) - 1 for row in mine)
-        found.append([str(number), f"{least:.3g}", f"{100 * wide:.1f} %"])
-    return table(["voussoirs", "least friction asked", "widest band"], found)
-
-
-def _rows(name: str) -> list[dict[str, str]]:
-    with (ROWS / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def _commands(_: str) -> str:
@@ -220,6 +192,21 @@ def _right(groups: dict[str, Any], *, in_space: bool) -> str:
     return f"{100 * sum(count[0] for count in counts) / every:.1f} %" if every else "-"
 
 
+def _convergence(_: str) -> str:
+    """Errors of motion over the step, and the order from the second step to the fourth."""
+    with (ROWS / "convergence.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    steps = list(dict.fromkeys(row["step"] for row in rows))
+    cells = list[list[str]]()
+    for motion in dict.fromkeys(row["motion"] for row in rows):
+        errors = [float(row["error"]) for row in rows if row["motion"] == motion]
+        exact = max(errors) < 1e-12
+        order = math.log2(errors[1] / errors[3]) / 2
+        said = ["none" if exact else f"{100 * error:.1g} %" for error in errors]
+        cells.append([motion, *said, "exact" if exact else f"{order:.1f}"])
+    return table(["motion", *(f"step {step}" for step in steps), "order"], cells)
+
+
 TABLES: dict[str, Callable[[str], str]] = {
     "methods": _methods,
     "format": of_format,
@@ -227,10 +214,9 @@ TABLES: dict[str, Callable[[str], str]] = {
     "parameters": _parameters,
     "commands": _commands,
     "validated": of_validation,
+    "convergence": _convergence,
     "example": _example,
-    "walls": _walls,
     "suite": _suite,
-    "keystone": _keystone,
 }
 
 

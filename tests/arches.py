@@ -3,19 +3,57 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from blocksim import (
+    Arch,
+    Assembly,
+    Block,
+    Bracket,
+    CircularArch,
+    Joint,
+    Mode,
+    Problem,
+    Verdict,
+    bracket,
+)
 from blocksim.arch import limit
-from blocksim.arch.circular import Arch, Weight
-from blocksim.ask.bracket import Bracket, bracket
-from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
-from blocksim.blocks.problem import Problem
+from blocksim.arch.circular import Weight
+from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.engines.base import Engine
-from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.onset import onset
-from blocksim.simulation.verdict import Verdict
+from blocksim.simulation.simulated import Simulation
+
+ARCHES: dict[str, list[tuple[Any, ...]]] = {
+    "pymunk": [
+        (90, 0.7, 27, "centreline", Mode.RRR),
+        (90, 0.7, 20, "sector", Mode.RRR),
+        (60, 0.9, 15, "centreline", Mode.RRR),
+        (90, 0.35, 20, "centreline", Mode.SRR),
+        (125, 0.9, 21, "sector", Mode.SRR),
+        (145, 1.6, 17, "centreline", Mode.RRS),
+        (145, 1.7, 20, "sector", Mode.RRS),
+        (149.15618426323448, 1.79, 42, "centreline", Mode.RSR),
+        (155, 3.0, 15, "centreline", Mode.RS),
+        (148, 1.8, 16, "sector", Mode.RS),
+        (155, math.inf, 14, "centreline", Mode.R),
+    ],
+    "pybullet": [
+        (90, 0.7, 9, "centreline", Mode.RRR),
+        (90, 0.35, 10, "centreline", Mode.SRR),
+        (145, 1.6, 17, "centreline", Mode.RRS),
+        (155, 3.0, 11, "centreline", Mode.RS),
+    ],
+    "mujoco": [
+        (90, 0.7, 10, "centreline", Mode.RRR),
+        (90, 0.35, 12, "sector", Mode.SRR),
+        (145, 1.6, 17, "centreline", Mode.RRS),
+        (155, 3.0, 15, "centreline", Mode.RS),
+    ],
+}
+"""Half-angle [deg], mu, voussoirs, weight, and the mode a little below the least thickness."""
 
 
 def arch_at(
@@ -36,6 +74,7 @@ def bracket_at(
     *,
     method: str,
     tol: float,
+    confirm: bool = True,
 ) -> Bracket:
     """The bracket of an arch whose half-angle is given in degrees."""
     return bracket(
@@ -44,6 +83,7 @@ def bracket_at(
         ),
         method=method,
         tol=tol,
+        confirm=confirm,
     )
 
 
@@ -51,40 +91,10 @@ def held_in(
     engine: Engine, assembly: Assembly, mu: float, *, sweeps: int
 ) -> tuple[Verdict, Array]:
     """Verdict of the onset test, and the accelerations after so many sweeps more."""
-    settings = engine.rule(assembly)
-    world = engine.build(Problem(assembly=assembly, mu=mu), settings)
-    seen = onset(world, engine, Problem(assembly=assembly, mu=mu), settings)
+    simulation = Simulation.of(Problem(assembly=assembly, mu=mu), engine)
+    world = simulation.world()
+    seen = onset(world, simulation)
     return seen.verdict, world.hold(sweeps)
-
-
-def mirrored(assembly: Assembly) -> Assembly:
-    """The mirror image."""
-    flip = np.array([-1.0, 1.0])
-    blocks = tuple(
-        replace(block, vertices=(block.vertices * flip)[::-1], centre=block.centre * flip)
-        for block in assembly.blocks
-    )
-    joints = tuple(
-        Joint(before=j.after, after=j.before, inner=j.inner * flip, outer=j.outer * flip)
-        for j in assembly.joints
-    )
-    return Assembly(blocks=blocks, joints=joints, size=assembly.size)
-
-
-def shuffled(assembly: Assembly, seed: int) -> Assembly:
-    """The same with blocks and joints in another order."""
-    random = np.random.default_rng(seed)
-    order = random.permutation(len(assembly.blocks))
-    place = {SUPPORT: SUPPORT, **{int(old): new for new, old in enumerate(order)}}
-    joints = [
-        Joint(before=place[j.before], after=place[j.after], inner=j.inner, outer=j.outer)
-        for j in assembly.joints
-    ]
-    return Assembly(
-        blocks=tuple(assembly.blocks[old] for old in order),
-        joints=tuple(joints[i] for i in random.permutation(len(joints))),
-        size=assembly.size,
-    )
 
 
 def box(corner: Array, along: Array, width: float, height: float) -> Block:

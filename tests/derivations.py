@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq, root
 
-from blocksim.arch.circular import Arch, Weight
+from blocksim import Arch, Mode
+from blocksim.arch.circular import Weight
 from blocksim.arch.limit.mechanism import mechanism
-from blocksim.arch.modes import Mode
 from blocksim.arch.theory.equations import Value, normal_force, shape
 from blocksim.arch.theory.lines import friction_line, section_moment, thrust_line
 from blocksim.blocks.assembly import Array
@@ -131,16 +131,13 @@ def solve_onset(
 
 
 def least_thickness_by_program(
-    half_angle: float, mu: float, voussoirs: int, weight: Weight = "centreline", **asked: bool
+    half_angle: float, mu: float, voussoirs: int, weight: Weight = "centreline"
 ) -> float | None:
-    """Least thickness at which the program (16) has the value zero; None if above 2.
-
-    Keywords are those of `mechanism`.
-    """
+    """Least thickness at which the program (16) has the value zero; None if above 2."""
     arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
 
     def missing(eta: float) -> float:
-        return mechanism(replace(arch, eta=eta), mu, **asked).extra_strength
+        return mechanism(replace(arch, eta=eta), mu).extra_strength
 
     if missing(2.0) > 0:
         return None

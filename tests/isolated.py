@@ -154,8 +154,12 @@ def serve() -> None:
     """Run the commands that are asked for, line by line."""
     import importlib
 
+    from blocksim.view.mapshapes import map_shapes
+
     for name in LIBRARIES:
         importlib.import_module(name)
+    for weight in ("centreline", "sector"):
+        map_shapes(weight)
     gc.freeze()
     for line in sys.stdin:
         asked = json.loads(line)

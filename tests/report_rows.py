@@ -7,12 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from blocksim.arch.circular import Arch
-from blocksim.arch.modes import Mode
+from blocksim import Arch, CircularArch, Mode, Recording, Verdict
 from blocksim.engines.base import Settings
-from blocksim.kinds.circular import CircularArch
-from blocksim.simulation.recording import Recording
-from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import Validation
 
 ARCH = Arch(half_angle=math.pi / 2, eta=0.105, voussoirs=8)

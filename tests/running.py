@@ -59,12 +59,17 @@ def until(true: Callable[[], bool], driver: subprocess.Popen[bytes] | None = Non
 
 
 def children(pid: int) -> list[int]:
-    """Workers of a driver."""
-    listed = Path(f"/proc/{pid}/task").glob("*/children")
-    pids = [int(word) for path in listed for word in path.read_text().split()]
-    return [
-        each for each in pids if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()
-    ]
+    """Workers of a driver; a thread or a process may have ended since it was listed."""
+    found = list[int]()
+    for listed in Path(f"/proc/{pid}/task").glob("*/children"):
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+            found += [int(word) for word in listed.read_text().split()]
+    workers = list[int]()
+    for each in found:
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+            if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes():
+                workers.append(each)
+    return workers
 
 
 def alive(pid: int) -> bool:

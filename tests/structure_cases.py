@@ -43,6 +43,14 @@ def of_each_kind(found: Iterable[str]) -> list[Any]:
     return params
 
 
+def some_of(found: Iterable[str], every: int = 3) -> list[Any]:
+    """Cases of which one in so many is in the usual run, and the others are long."""
+    return [
+        pytest.param(name, marks=[pytest.mark.long] if at % every else [])
+        for at, name in enumerate(found)
+    ]
+
+
 def scenes(name: str) -> list[dict[str, Any]]:
     """The structures of a case, as structure files have them."""
     read = _read(name)

@@ -21,7 +21,7 @@ voussoirs = { low = 7, high = 12 }
 eta = { low = 0.05, high = 0.2 }
 method = ["limit", "direct"]
 [random]
-count = 40
+count = 20
 seed = 7
 """
 Rows = dict[str, dict[str, object]]

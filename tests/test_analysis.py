@@ -14,7 +14,6 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
-import av
 import matplotlib.colors
 import matplotlib.image
 import numpy as np
@@ -25,9 +24,7 @@ import blocksim
 from blocksim import Arch
 from blocksim.arch import limit, theory
 from blocksim.engines.base import Quality
-from blocksim.report.chart import read_points
 from blocksim.simulation.simulated import Simulation
-from blocksim.studies.chart import cases
 from blocksim.view.style import LIVE, MECHANISM, STONE, THRUST
 
 STUDIES = Path(__file__).parent.parent / "analysis"
@@ -50,6 +47,7 @@ def test_pictures_of_pages_are_drawn_again_by_one_command(tmp_path: Path) -> Non
     made = study("pictures").main(tmp_path, quick=True)
     assert made[:2] == ["docs/sketch.svg", "docs/arch.svg"]
     assert made[2].startswith("docs/examples/")
+    assert made[3] == "analysis/figures/onset_modes_direct.png"
     root = STUDIES.parent
     for each in made:
         assert (root / each).exists()
@@ -79,6 +77,16 @@ def test_a_study_takes_a_folder_with_a_slash(
     assert capsys.readouterr().out == f"{tmp_path}/rows True\n"
 
 
+@pytest.mark.long
+def test_streams_are_answered_as_other_programmes_say(tmp_path: Path) -> None:
+    rows = study("streams").main(tmp_path, quick=True)
+    assert [row["kind"] for row in rows] == ["stacks", "towers"]
+    for row in rows:
+        assert row["scenes"] == row["stands"] + row["collapses"] == 60
+        assert (row["held"], row["false"]) == (20, 0)
+        assert min(row["stands"], row["collapses"]) > 10
+
+
 def test_cases_in_space_are_asked_once(tmp_path: Path) -> None:
     """Two small ones, by limit analysis; what is on disk is not asked again."""
     for _ in range(2):
@@ -86,6 +94,15 @@ def test_cases_in_space_are_asked_once(tmp_path: Path) -> None:
         assert "| limit | 1.0% | 3 | 0 | 0 |" in told
     with (tmp_path / "space_cases.csv").open(encoding="utf-8") as file:
         assert len(list(csv.DictReader(file))) == 5
+
+
+@pytest.mark.long
+def test_random_assemblies_are_enclosed(tmp_path: Path) -> None:
+    """One of each family: cut, leaning, a vault."""
+    told = study("random_space").main(tmp_path, quick=True)
+    assert "| factor | 3 | 0 | 0 |" in told
+    assert "| above | 3 | 0 | 0 |" in told
+    assert "| area | 2 | 0 | 0 |" in told
 
 
 @pytest.mark.long
@@ -100,21 +117,11 @@ def test_domes_are_bracketed_and_drawn(tmp_path: Path) -> None:
     assert (tmp_path / "dome_map.png").stat().st_size > 0
 
 
-def test_random_arches_have_no_false_answer_and_small_error(tmp_path: Path) -> None:
-    result = study("random_arches").main(tmp_path, quick=True)
-    assert result.arches == result.confirmed == result.same_mode == 4
-    assert result.undecided == 0
-    assert result.worst_error <= 1e-4  # half the bracket's width: no end is false
-    assert (tmp_path / "random_arches.png").stat().st_size > 0
-
-
 @pytest.mark.long
 def test_pulses_overturn_a_block_where_housner_says(tmp_path: Path) -> None:
     module = study("shaking")
     result = module.main(tmp_path, quick=True)
     assert result.worst < 0.01
-    assert result.fall.time == pytest.approx(result.fall.time_known, rel=2e-3)
-    assert result.fall.kept == pytest.approx(result.fall.kept_known, abs=1e-2)
     for row in result.maps["block"]:
         falls = row["amplitude_g"] > module.overturning(row["duration_s"])
         assert row["verdict"] == ("collapses" if falls else "stands"), row
@@ -189,45 +196,6 @@ def test_arches_on_spreading_supports(tmp_path: Path) -> None:
     assert hinges[: len(pixels) // 3, pixels.shape[1] // 3 :].any()
 
 
-@pytest.mark.long
-def test_every_method_is_charted(tmp_path: Path) -> None:
-    """What the figures are depends on the machine; `test_work_precision` has the errors."""
-    result = study("speed_accuracy").main(tmp_path, quick=True)
-    assert len(result.over_pymunk) == 2
-    assert all(errors["pymunk, sweeps 10"] > 0.1 for errors in result.alone.values())
-    assert (tmp_path / "chart.png").stat().st_size > 0
-
-
-@pytest.mark.long
-def test_where_engines_stop_working(tmp_path: Path) -> None:
-    """By the rules' settings nothing is wrong or open; with far too few sweeps it is open."""
-    rows = study("stability").main(tmp_path, quick=True, engines=["direct", "pymunk"])
-    assert {row.part for row in rows} == {
-        "released",
-        "held",
-        "lines",
-        "energy",
-        "away",
-        "lasting",
-    }
-    ruled = [
-        row
-        for row in rows
-        if row.at.get("step", 1) == row.at.get("sweeps", 1) == 1
-        and row.at.get("allowed") in (None, row.at.get("rule"))
-        and row.at.get("distance", 1) == 1
-    ]
-    assert {row.outcome for row in ruled} == {"right"}
-    few = [row for row in rows if row.engine == "pymunk" and row.at.get("allowed") == 3]
-    assert {row.outcome for row in few} == {"undecided"}
-    for engine in ("direct", "pymunk"):
-        axes = study("stability_figure").draw_engine(rows, engine).axes
-        assert [each.get_title("left").split(":")[0] for each in axes] == [engine] * 4
-    assert {path.stem for path in tmp_path.glob("*.png")} == {
-        "stability_direct", "stability_pymunk", "stability_long",
-    }  # fmt: skip
-
-
 def test_every_study_is_listed_with_its_claim() -> None:
     listed = (STUDIES / "README.md").read_text(encoding="utf-8")
     assert [path.name for path in STUDIES.glob("*.py") if path.name not in listed] == []
@@ -249,13 +217,12 @@ def test_what_a_study_takes_are_its_options(
 
 @pytest.mark.long
 def test_modes_at_the_onset_are_those_of_limit_analysis(tmp_path: Path) -> None:
-    result = study("onset_modes").main(tmp_path, quick=True)
-    assert result.arches == result.as_limit == 14
-    assert result.rsr == result.rsr_seen >= 1
-    assert result.undecided == 0
+    assert len(study("onset_modes").main(tmp_path, quick=True)) == 14
     with (tmp_path / "onset_modes_direct.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert [row["mode"] for row in rows] == [row["mode_limit"] for row in rows]
+    assert "rsr" in {row["mode"] for row in rows}
+    assert {row["verdict"] for row in rows} == {"collapses"}
     assert Counter(row["drawn"] for row in rows) == {"map": 10, "rsr": 2, "S": 1, "J": 1}
 
 
@@ -278,73 +245,16 @@ def test_arches_of_the_map_are_drawn_the_same_again_and_near_critical() -> None:
 
 
 @pytest.mark.long
-def test_few_blocks_answer_as_all_voussoirs_do(tmp_path: Path) -> None:
-    result = study("reduction").main(tmp_path, quick=True)
-    assert result.arches == result.compared == result.same == result.confirmed == 4
-    assert result.same_mode == 4
-    assert result.worst_error["direct"] < 1e-6
-    assert result.worst_error["pymunk"] < 1e-3
-    assert result.random == 8
-    assert result.false == 0
-    assert (tmp_path / "reduction.png").stat().st_size > 0
-
-
 def test_few_bodies_answer_as_all_blocks_do(tmp_path: Path) -> None:
-    result = study("merging").main(tmp_path, quick=True)
-    assert (result.asked, result.false, result.opened) == (4, 0, 0)
-    assert result.merged > 0
+    rows = study("merging").main(tmp_path, quick=True)
+    assert [row["side"] for row in rows] == ["inside", "outside"] * 2
+    for row in rows:
+        right = "stands" if row["side"] == "inside" else "collapses"
+        assert row["whole"] == row["merged"] == right
+        assert row["bodies"] <= row["all_blocks"]
+    assert any(row["bodies"] < row["all_blocks"] for row in rows)
     with (tmp_path / "merging_pymunk.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert [row["side"] for row in rows].count("inside") == 2
-    assert all(int(row["bodies"]) <= int(row["all_blocks"]) for row in rows)
-
-
-@pytest.mark.long
-def test_the_benchmark_stores_and_compares(tmp_path: Path) -> None:
-    benchmark = study("benchmark")
-    first = benchmark.main(tmp_path, quick=True)
-    assert first.ratios == {}
-    assert "new" in benchmark.table(first)
-    stored = json.loads(first.path.read_text(encoding="utf-8"))
-    assert stored["seconds"] == first.record.seconds
-    doubled = {name: 2 * seconds for name, seconds in stored["seconds"].items()}
-    first.path.write_text(json.dumps(stored | {"seconds": doubled}), encoding="utf-8")
-    again = benchmark.main(tmp_path, quick=True)
-    assert again.path == first.path
-    for name, ratio in again.ratios.items():
-        assert ratio == pytest.approx(again.record.seconds[name] / doubled[name])
-    assert set(again.ratios) == set(doubled)
-    assert "of the last" in benchmark.table(again)
-
-
-def test_the_timings_kept_with_the_code_can_be_compared_with() -> None:
-    benchmark = study("benchmark")
-    kept = list(benchmark.TIMINGS.glob("*.json"))
-    assert kept
-    for path in kept:
-        record = benchmark.Record(**json.loads(path.read_text(encoding="utf-8")))
-        assert f"{record.machine}.json" == path.name
-        assert benchmark.stored(path) == record.seconds
-
-
-def test_the_keystone_ends_its_motion_where_the_closed_form_says(tmp_path: Path) -> None:
-    said = study("keystone").main(tmp_path, processes=1, quick=True)
-    assert "2 arches, 2 of which the rest holds" in said
-    assert "closed form and motion followed within 0.002% at 2" in said
-    with (tmp_path / "keystone.csv").open(newline="") as file:
-        seven, many = csv.DictReader(file)
-    assert (seven["voussoirs"], many["voussoirs"]) == ("7", "101")
-    # Branch and bound: tests/test_starting.py.
-    assert 1.38 < float(seven["eta_end"]) / float(seven["eta_limit"]) < 1.39
-    assert 1 < float(many["eta_end"]) / float(many["eta_limit"]) < 1.02
-
-
-def test_the_first_wall_may_move_below_the_push_at_which_it_can_rest(tmp_path: Path) -> None:
-    said = study("walls_two_answers").main(tmp_path, processes=1, quick=True)
-    assert "wall 1: rests to 0.642859, may move from 0.638982, known 0.638982" in said
-    with (tmp_path / "walls_two_answers.csv").open(newline="") as file:
-        (row,) = csv.DictReader(file)
-    assert float(row["wrong"]) < 1e-9
+        assert len(list(csv.DictReader(file))) == 4
 
 
 @pytest.mark.long
@@ -387,6 +297,7 @@ def test_structures_with_known_answers_are_answered_right(tmp_path: Path) -> Non
     assert "0 false, 0 undecided" in study_of.table(result)
 
 
+@pytest.mark.long
 def test_other_engines_are_asked_about_structures_with_known_answers(tmp_path: Path) -> None:
     study_of = study("structure_cases")
     result = study_of.main(tmp_path, quick=True, engine="pymunk")
@@ -404,10 +315,12 @@ def test_other_engines_are_asked_about_structures_with_known_answers(tmp_path: P
 def test_rubble_is_solid_and_gains_no_energy(tmp_path: Path) -> None:
     """One arch and one wall; `test_rubble` has every engine."""
     module = study("rubble")
-    result = module.main(tmp_path, quick=True, engine="direct")
-    assert result.collapses == result.solid == result.tame == 2
-    assert result.overlap < module.ALLOWED
-    assert result.thrown == 0.0
+    rows = module.main(tmp_path, quick=True, engine="direct")
+    assert len(rows) == 2
+    for row in rows:
+        assert row["overlap"] < module.ALLOWED
+        assert max(row["gain"], row["own_gain"]) < module.GAIN
+        assert row["thrown"] == 0.0
     with (tmp_path / "rubble_direct.csv").open(newline="") as file:
         assert [row["kind"] for row in csv.DictReader(file)] == ["arch", "wall"]
 
@@ -457,16 +370,13 @@ def test_what_is_thrown_would_be_seen() -> None:
 @pytest.mark.long
 def test_the_gallery_shows_what_stands_and_falls(tmp_path: Path) -> None:
     module = study("gallery")
-    result = module.main(tmp_path, quick=True)
-    assert [row.structure for row in result.rows] == ["oppenheim_7", "gable"]
-    for row in result.rows:
-        assert (row.stood, row.fell) == ("stands", "collapses")
-        assert row.moved > 0.3
-        assert row.overlap < 0.01
-        assert row.gain < 1e-3
-    written = {path.name for path in tmp_path.iterdir()}
-    films, pictures = {"oppenheim_7.mp4", "gable.mp4"}, {"oppenheim_7.png", "gable.png"}
-    assert written == films | pictures | {"gallery.png", "gallery.csv"}
+    seen = module.main(tmp_path, quick=True)
+    assert [each.name for each in seen] == ["oppenheim_7", "gable"]
+    for each in seen:
+        assert each.verdicts == ("stands", "collapses")
+        assert each.fall.displacement.max() > 0.3
+        assert (each.fall.quality.penetration or 0) < 0.01
+        assert (each.fall.quality.gain or 0) < 1e-3
     # Forces above, blocks below: the colours of each are where they belong.
     sheet = matplotlib.image.imread(tmp_path / "gallery.png")[..., :3]
     top, bottom = np.array_split(sheet, 2)
@@ -485,31 +395,34 @@ def test_the_gallery_shows_what_stands_and_falls(tmp_path: Path) -> None:
 
 @pytest.mark.long
 def test_one_arch_falls_alike_side_by_side(tmp_path: Path) -> None:
-    """Its film has all engines in each frame, and stops moving as the last one rests."""
-    result = study("four_engines").main(tmp_path, quick=True)
-    assert [row.engine for row in result.rows] == ["direct", "pymunk"]
-    one, other = result.rows
-    assert one.fallen == pytest.approx(other.fallen, rel=0.05)
-    assert 0.5 < one.fallen < 1
-    assert all(row.rested and row.lopsided < 3e-3 for row in result.rows)
-    written = {"engines.mp4", "engines.png", "four_engines.csv"}
-    assert {path.name for path in tmp_path.iterdir()} == written
-    with av.open(str(tmp_path / "engines.mp4")) as container:
-        frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
-    assert frames[0].shape[1] == 2 * 320
-    first, last = frames[0].astype(int), frames[-1].astype(int)
-    for half in (slice(0, 320), slice(320, 640)):
-        moved = np.abs(first[:, half] - last[:, half]).max(axis=2) > 60
-        assert moved.mean() > 0.01
-    # On one scale: below its name each is the same arch at first.
-    apart = np.abs(first[40:160, :320] - first[40:160, 320:]).max(axis=2) > 60
-    assert apart.mean() < 1e-3
+    module = study("four_engines")
+    runs = module.main(tmp_path, quick=True)
+    assert list(runs) == ["direct", "pymunk"]
+    fallen = []
+    for run in runs.values():
+        assert run.times[-1] < 15
+        # Before blocks hit the ground: the crown is lower, and one half mirrors the other.
+        way = run.poses[int(np.searchsorted(run.times, 2.0))] - run.poses[0]
+        fallen.append(-way[7, 1])
+        assert np.abs(way[:, :2] - way[::-1, :2] * (-1, 1)).max() < 3e-3
+    assert fallen[0] == pytest.approx(fallen[1], rel=0.05)
+    assert 0.5 < fallen[0] < 1
+    # On one scale: both show the same arch at first, and each moves.
+    panels = [axes.images[0].get_array() for axes in module.picture(runs, height=270).axes]
+    apart = [
+        (np.abs(panels[one].astype(int) - panels[other]).max(axis=2) > 60).mean()
+        for one, other in ((0, 4), (0, 3), (4, 7))
+    ]
+    assert apart[0] < 1e-3
+    assert min(apart[1:]) > 0.01
+    assert (tmp_path / "engines.png").stat().st_size > 0
 
 
 def test_frames_of_the_gallery_hold_all_blocks() -> None:
     """Standing and falling, in one frame, of the shape asked for."""
     module = study("gallery")
-    _, problem, forces, fall = module.shown("gable")
+    shown = module.shown("gable")
+    problem, fall = shown.problem, shown.fall
     frame = module._falling(fall)
     assert 0.2 < float(fall.displacement[frame]) < 0.45
     low, high = module._shaped(module._box(fall, (fall.poses[0], fall.poses[frame])), 1.2)
@@ -523,7 +436,7 @@ def test_frames_of_the_gallery_hold_all_blocks() -> None:
     built = [block.vertices for block in problem.assembly.blocks]
     np.testing.assert_allclose([parts[0] for parts in rest], built, atol=1e-12)
     # Forces hold what stands above; below nothing holds it any more.
-    axes = module.sheet([("gable", problem, forces, fall)]).axes
+    axes = module.sheet([shown]).axes
     drawn = [{str(each.get_gid()) for each in axis.get_children()} for axis in axes]
     assert {f"force-{joint}" for joint in range(3)} <= drawn[0]
     assert not any(name.startswith("force") for name in drawn[1])
@@ -533,37 +446,6 @@ def test_frames_of_the_gallery_hold_all_blocks() -> None:
     np.testing.assert_allclose(blocks[0], built, atol=1e-12)
     lowered = np.array(blocks[0])[..., 1].max() - np.array(blocks[1])[..., 1].max()
     assert lowered > 0.2 * problem.assembly.size
-
-
-def test_lmgc90_says_where_it_is_missing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    module = study("lmgc90")
-    monkeypatch.setattr(module, "find_spec", lambda _name: None)
-    assert module.main(tmp_path, quick=True).errors == {}
-    assert capsys.readouterr().err == "LMGC90 is missing: pip install compas_lmgc90\n"
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_the_least_thickness_lmgc90_is_held_to() -> None:
-    """With blocksim's weight it is `limit`'s; the polygons' own shifts it by a little."""
-    module = study("lmgc90")
-    for case in cases(quick=True):
-        exact = limit.least_thickness(case.half_angle, case.mu, case.voussoirs).eta
-        assert module.least(case, centroids=False) == pytest.approx(exact, rel=1e-7)
-        assert module.least(case) == pytest.approx(exact, rel=0.05)
-    # Where the weight lies decides whether the chart's steep arch stands at all.
-    steep = cases(quick=False)[3]
-    assert module.least(steep) is None
-    assert limit.least_thickness(steep.half_angle, steep.mu, 27, "sector").eta is None
-
-
-def test_lmgc90_is_charted(tmp_path: Path) -> None:
-    pytest.importorskip("compas_lmgc90")
-    result = study("lmgc90").main(tmp_path, quick=True)
-    assert all(error < 0.02 for steps in result.errors.values() for error in steps.values())
-    points = read_points(tmp_path / "lmgc90.json")
-    assert [point.method for point in points] == ["lmgc90"]
 
 
 def test_referee_makes_its_table_of_the_rows_that_are_kept(tmp_path: Path) -> None:

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from blocksim import Mode
 from blocksim.arch.limit.collapse import collapse_of_mode
-from blocksim.arch.modes import Mode
 from blocksim.arch.theory import landmarks, least_thickness
 from blocksim.view.archfigure import ArchPicture, arch_figure, picture_of_theory
 from blocksim.view.drawing import save_figure

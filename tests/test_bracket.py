@@ -13,15 +13,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from blocksim import CircularArch, InputError, Mode, Problem, Verdict, bracket
 from blocksim.arch import limit, theory
-from blocksim.arch.modes import Mode
-from blocksim.ask.bracket import bracket
-from blocksim.ask.search import ETA_MAX, Answer, Bisection
-from blocksim.blocks.problem import Problem
-from blocksim.common.errors import InputError
-from blocksim.kinds.circular import CircularArch
+from blocksim.arch.circular import ETA_MAX
+from blocksim.ask.search import Answer, Bisection
 from blocksim.simulation.observation import Held, hold
-from blocksim.simulation.verdict import Verdict
 
 tolerances = st.floats(1e-4, 0.3)
 thresholds = st.floats(1e-3, 1.99)

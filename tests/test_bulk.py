@@ -5,22 +5,23 @@ from __future__ import annotations
 import json
 import math
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-import shapely
 from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from space_cases import box, problem_of, tower
+from space_cases import box, is_over, problem_of, tower
 
 import blocksim
-from blocksim import Solid, SpatialProblem
-from blocksim.ask.bulk import Structure, check_many
+from blocksim import Problem, Solid, check_many, equilibrium
+from blocksim.ask.bulk import Structure
+from blocksim.blocks.road import with_soil
+from blocksim.blocks.soil import Soil
 from blocksim.cli.app import app
-from blocksim.limit import equilibrium
 from blocksim.limit.determinate import margin_of_stack, margin_of_tower
 from blocksim.limit.space import can_rest
 from blocksim.suite.export import questions
@@ -104,16 +105,7 @@ def test_margins_in_closed_form() -> None:
 @pytest.mark.parametrize("seed", range(12))
 def test_towers_stand_where_what_is_above_lies_over_each_face(seed: int) -> None:
     solids = tower(seed, blocks=2 + seed % 4)
-    corners = [np.asarray(each.parts[0]) for each in solids]
-    bases = [shapely.MultiPoint(each[:, :2]).convex_hull for each in corners]
-    pairs = zip(bases, corners, strict=True)
-    volumes = [base.area * float(np.ptp(each[:, 2])) for base, each in pairs]
-    over = True
-    for at in range(1, len(solids)):
-        above = sum(volumes[at:])
-        x = sum(v * b.centroid.x for v, b in zip(volumes[at:], bases[at:], strict=True)) / above
-        y = sum(v * b.centroid.y for v, b in zip(volumes[at:], bases[at:], strict=True)) / above
-        over &= bases[at].intersection(bases[at - 1]).contains(shapely.Point(x, y))
+    over = is_over(solids)
     problem = problem_of(solids)
     margin = margin_of_tower(problem)
     assert margin is not None
@@ -126,12 +118,24 @@ def test_what_is_no_tower_is_left_to_the_programme() -> None:
     legs = [Solid(parts=(box((x, 0, 0), (x + 0.5, 1, 1)),)) for x in (0, 2)]
     beam = Solid(parts=(box((0, 0, 1), (2.5, 1, 1.5)),))
     assert margin_of_tower(problem_of([ground, *legs, beam])) is None
-    pushed: SpatialProblem = problem_of([ground, legs[0]]).tilted(0.1)
+    pushed: Problem[Any] = problem_of([ground, legs[0]]).tilted(0.1)
     assert margin_of_tower(pushed) is None
     wall = blocksim.Wall(
         length=3, courses=3, block_length=1, block_height=0.5, friction=0.6
     ).problem()
     assert margin_of_stack(wall) is None
+
+
+def test_stacks_that_crush_or_lean_on_soil_are_answered_as_by_check() -> None:
+    """By its joints alone the one would stand, and the other be pressed over."""
+    column = blocksim.Column(drums=3, drum_height=1, width=1, friction=0.5, density=2e4)
+    crushed = replace(column.problem(), strength=0.99 * 3 * 2e4)
+    soil = Soil(unit_weight=18e3, height=0.5, pressure=(0.9, 0.0), passive=(0.0, 3.0))
+    leaning = with_soil(column.problem(), soil)
+    told = [each.verdict for each in check_many([crushed, leaning], workers=1)]
+    assert told == ["collapses", "stands"]
+    asked = [blocksim.check(each, method="limit") for each in (crushed, leaning)]
+    assert told == [each.verdict for each in asked]
 
 
 def test_each_has_its_answer_in_order_and_what_is_broken_is_one() -> None:

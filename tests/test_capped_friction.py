@@ -11,12 +11,9 @@ import math
 import pytest
 
 from analysis import random_truth
-from analysis.certificates import certificate
-from analysis.random_problems import drawn
-from blocksim.ask.check import check
-from blocksim.blocks.problem import Problem
-from blocksim.blocks.structure import structure_of
-from blocksim.simulation.verdict import Verdict
+from blocksim import Problem, Verdict, check, structure_of
+from tests.certificates import certificate
+from tests.random_problems import drawn
 
 LACKING = "with less friction than asked for it starts"
 WALL = 8511

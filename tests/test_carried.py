@@ -12,11 +12,10 @@ from running import inside
 from scipy.optimize import linprog
 
 import blocksim
-from blocksim.arch.circular import Arch
+from blocksim import Arch, CircularArch
 from blocksim.arch.limit.statics import least_thickness as least_as_built
 from blocksim.arch.theory import least_thickness
 from blocksim.blocks.joints import joint_names
-from blocksim.kinds.circular import CircularArch
 
 SPAN, RISE, THICKNESS, COUNT, ANGLE, HEAVY = 8.0, 3.0, 0.45, 31, 35.0, 22e3
 DIMENSIONS = "--span 8 --rise 3 --thickness 0.45 --voussoirs 31"

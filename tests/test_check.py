@@ -8,15 +8,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from blocksim import Arch, CircularArch, InputError, JointState, Mode, Verdict, check
 from blocksim.arch import limit, theory
-from blocksim.arch.circular import Arch
-from blocksim.arch.modes import Mode
-from blocksim.ask.check import check
 from blocksim.ask.methods import choose, chosen_words
-from blocksim.blocks.joints import JointState
-from blocksim.common.errors import InputError
-from blocksim.kinds.circular import CircularArch
-from blocksim.simulation.verdict import Verdict
 
 
 @given(

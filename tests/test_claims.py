@@ -9,15 +9,11 @@ from runpy import run_path
 import numpy as np
 import pytest
 
-from blocksim.ask.check import check
+from blocksim import CircularArch, EllipticArch, Portal, Problem, check
 from blocksim.ask.families import family_of
 from blocksim.ask.options import problem_of
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.problem import Problem
-from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.elliptic import EllipticArch
-from blocksim.kinds.known import load_known
-from blocksim.kinds.portal import Portal
+from blocksim.kinds.loading import load_known
 from blocksim.view.placing import distance_of
 from blocksim.view.sheet import answer_sheet
 from blocksim.view.sheetfigure import sheet_figure

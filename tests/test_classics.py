@@ -12,11 +12,10 @@ from itertools import product
 import numpy as np
 import pytest
 
-from blocksim.blocks.assembly import Array, Assembly
-from blocksim.blocks.problem import Problem
+from blocksim import Problem, Verdict, assembly_of_polygons
+from blocksim.blocks.assembly import Array
 from blocksim.engines import ENGINES
 from blocksim.simulation.observation import observe
-from blocksim.simulation.verdict import Verdict
 
 FLOOR = np.array([(-20.0, -1.0), (20.0, -1.0), (20.0, 0.0), (-20.0, 0.0)])
 
@@ -28,7 +27,7 @@ def box(left: float, low: float, width: float, height: float) -> Array:
 
 def standing(*blocks: Array, fixed: tuple[Array, ...] = (FLOOR,), mu: float) -> Problem:
     every = [*fixed, *blocks]
-    return Problem(assembly=Assembly.of_polygons(every, fixed=range(len(fixed))), mu=mu)
+    return Problem(assembly=assembly_of_polygons(every, fixed=range(len(fixed))), mu=mu)
 
 
 def card_house(share: float) -> Problem:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from vision import SEEN, contrast, difference, lab, linear, nearest
 
-from blocksim.blocks.joints import JointState
+from blocksim import JointState
 from blocksim.view import style
 
 APART = 12.0
@@ -27,6 +27,13 @@ TOGETHER = {
         *(each.colour for each in style.MODES.values()),
         style.VERDICTS["stands"],
         style.VERDICTS["collapses"],
+    ],
+    "use of joints": [
+        *(tone for _, _, tone in style.USE),
+        style.THRUST,
+        style.STONE,
+        style.INK,
+        "#ffffff",
     ],
     "verdicts": list(style.VERDICTS.values()),
 }
@@ -98,7 +105,7 @@ def test_no_colour_has_two_meanings() -> None:
 
 
 def test_words_can_be_read() -> None:
-    """On paper, on white and on the tint of a region: 4.5 to 1 at least (WCAG 2, AA)."""
+    """4.5 to 1 on paper, on white and on tints of regions (WCAG 2, AA); ink on tints 7."""
     for ground in (style.PAPER, "#ffffff"):
         for tone in (style.INK, style.QUIET, style.MISS, *style.VERDICTS.values()):
             assert contrast(tone, ground) >= 4.5
@@ -106,7 +113,7 @@ def test_words_can_be_read() -> None:
             assert contrast(look.ink, ground) >= 4.5
     for look in style.MODES.values():
         assert contrast(look.ink, look.tint) >= 4.5
-        assert contrast(style.INK, look.tint) >= 4.5
+        assert contrast(style.INK, look.tint) >= 7
 
 
 def test_lines_stand_out_from_stone_and_paper() -> None:

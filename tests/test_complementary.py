@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from blocksim import Mode
 from blocksim.arch.limit.complementary import complementary, joints_through
-from blocksim.arch.modes import Mode
 from blocksim.arch.theory import least_thickness
 from blocksim.arch.theory.critical import inner_sliding
 

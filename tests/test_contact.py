@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.coulomb import Friction
-from blocksim.engines.contact.path_following import come_together
+from blocksim.engines.contact.path_following import path_from_apart
 from blocksim.engines.contact.solver import ContactProblem
 from blocksim.engines.contact.step import Step
 
@@ -195,6 +195,6 @@ def test_one_block_on_two_contacts_does_what_one_of_all_combinations_says():
 def test_the_path_from_apart_always_arrives(seed, blocks, mu):
     before, after, mass, rows, rates, free = chain(seed, blocks)
     step = step_of(before, after, mass, rows, rates, free, mu)
-    end = come_together(step)
+    end = path_from_apart(step)
     assert step.residual(end.x, end.forces) < 1e-5
     assert 0 < end.systems < 40 * len(rows)

@@ -7,19 +7,14 @@ import numpy as np
 import pytest
 from arches import arch_at, bracket_at
 
-from blocksim.ask.search import Answer, Bisection
-from blocksim.ask.simulate import simulate
+from blocksim import CircularArch, Problem, Verdict, load_recording, simulate
 from blocksim.blocks.joints import joint_motion
-from blocksim.blocks.problem import Problem
 from blocksim.engines.base import trusted
 from blocksim.engines.contact import ContactProblem
 from blocksim.engines.direct import ENGINE, Blocks
-from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.recorded import load_recording
 from blocksim.simulation.observation import observe
 from blocksim.simulation.onset import onset
 from blocksim.simulation.simulated import Simulation
-from blocksim.simulation.verdict import Verdict
 
 CASES = [
     (90, 0.9, 27, "centreline"),
@@ -52,16 +47,6 @@ def test_a_billionth_of_the_limit_decides(half_angle_deg, mu, voussoirs, weight)
     case = (half_angle_deg, mu, voussoirs, weight)
     assert held(arch_at(1 - 1e-9, *case), mu) is Verdict.COLLAPSES
     assert held(arch_at(1 + 1e-9, *case), mu) is Verdict.STANDS
-
-
-def test_bisection_from_far_away_ends_at_the_limit():
-    arch = arch_at(1.0, 125, 0.9, 26)
-    search = Bisection(lambda eta: Answer(held(replace(arch, eta=eta), 0.9), math.nan))
-    search.expand(2 * arch.eta)
-    search.bisect(1e-9)
-    assert search.undecided == 0
-    assert search.low == pytest.approx(arch.eta, rel=2e-9)
-    assert search.high == pytest.approx(arch.eta, rel=2e-9)
 
 
 def energies_of(world, steps):
@@ -158,10 +143,9 @@ def test_over_its_residual_the_answer_is_undecided():
         CircularArch.of(arch_at(0.9, 90, 0.9, 20), 0.9).problem(), "direct"
     )
     settings = replace(simulation.settings, residual=0.0)
-    world = replace(simulation, settings=settings).world()
-    assert (
-        onset(world, simulation.engine, simulation.taken, settings).verdict is Verdict.UNDECIDED
-    )
+    simulation = replace(simulation, settings=settings)
+    world = simulation.world()
+    assert onset(world, simulation).verdict is Verdict.UNDECIDED
     assert not trusted(world, settings)
 
 

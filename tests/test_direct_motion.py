@@ -7,30 +7,17 @@ import numpy as np
 import pytest
 from arches import arch_at
 
-from blocksim.arch.circular import Arch
-from blocksim.ask.simulate import simulate
-from blocksim.blocks.assembly import displacement
+from blocksim import Arch, CircularArch, Problem, Verdict
 from blocksim.blocks.joints import joint_motion
-from blocksim.blocks.problem import Problem
 from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.engines.ground import ground_level, piers
-from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.motion import moving_run
 from blocksim.simulation.simulated import Simulation
-from blocksim.simulation.verdict import Verdict
 
 
 def world_of(assembly, mu, step):
     settings = replace(ENGINE.rule(assembly), step=step)
     return Blocks(Problem(assembly=assembly, mu=mu), settings)
-
-
-FALLS = [
-    pytest.param(90, 0.9, 20, 0.9, marks=pytest.mark.long),
-    pytest.param(125, 0.9, 15, 0.9, marks=pytest.mark.long),
-    pytest.param(150, 2.0, 15, 0.97, marks=pytest.mark.long),
-    (65, 0.35, 12, 0.7),
-]
 
 
 def clipped(polygon, other):
@@ -54,42 +41,6 @@ def clipped(polygon, other):
     return abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
 
 
-@pytest.mark.parametrize(("half_angle_deg", "mu", "voussoirs", "ratio"), FALLS)
-def test_a_collapse_ends_on_the_ground_with_no_block_in_another(
-    half_angle_deg, mu, voussoirs, ratio
-):
-    arch = arch_at(ratio, half_angle_deg, mu, voussoirs)
-    assembly = arch.assembly()
-    world = world_of(assembly, mu, 0.01)
-    world.hold(1)
-    energies = [world.energy]
-    level = ground_level(assembly)
-    area = arch.eta * 2 * arch.half_angle / voussoirs
-    for frame in range(70):
-        for _ in range(10):
-            world.advance(1)
-            energies.append(world.energy)
-        if frame % 10 and frame < 66:
-            continue
-        shapes = []
-        for block, (x, y, angle) in zip(assembly.blocks, world.poses(), strict=True):
-            cos, sin = math.cos(angle), math.sin(angle)
-            turned = (block.vertices - block.centre) @ np.array([[cos, sin], [-sin, cos]])
-            shapes.append(turned + np.array([x, y]))
-        assert min(shape[:, 1].min() for shape in shapes) > level - 3e-3
-        everything = [*shapes, *piers(assembly)]
-        for i, shape in enumerate(shapes):
-            for other in everything[i + 1 :]:
-                assert clipped(shape, other) < 0.02 * area
-    # Impacts take energy, steps of second order give less than a share of their square, and at
-    # last all lies still.
-    gained = np.array(energies) - np.minimum.accumulate(energies)
-    assert gained.max() < 0.01**2 / 12 * (energies[0] - energies[-1])
-    assert world.poses()[:, 1].max() < 0.5 + level + arch.eta * 3
-    assert world.quality().residual < 1e-7
-    assert world.quality().penetration < 0.02
-
-
 def test_deeper_overlap_than_allowed_is_undecided():
     def hold(world):
         world.hold(1)
@@ -107,17 +58,6 @@ def test_deeper_overlap_than_allowed_is_undecided():
     world = simulation.world()
     world.hold(1)
     assert moving_run(simulation, world, hold).verdict is Verdict.COLLAPSES
-
-
-def test_a_recording_of_a_collapse_goes_to_the_ground():
-    arch = arch_at(0.8, 90, 0.9, 9)
-    recording = simulate(CircularArch.of(arch, friction=0.9), method="direct", duration=12.0)
-    # It ends when the rubble lies still, not before.
-    assert recording.times[-1] < 12.0
-    resting = displacement(recording.poses - recording.poses[-1], recording.assembly)
-    assert resting[-41:].max() < 1e-3 < resting[-43]
-    lowest = recording.poses[-1, :, 1].min() - ground_level(arch.assembly())
-    assert 0.0 < lowest < arch.eta
 
 
 @pytest.mark.parametrize("half_angle_deg", [20, 60, 90, 120, 159])

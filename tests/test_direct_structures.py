@@ -11,22 +11,18 @@ import pytest
 from structure_cases import case, first, names, of_each_kind
 from threadpoolctl import ThreadpoolController
 
-from analysis.certificates import certificate
 from analysis.structure_cases import ASIDE, MOST, Question, answered, questions
-from blocksim.blocks.assembly import SUPPORT, Assembly, Joint
-from blocksim.blocks.joints import JointState, classify, joint_motion, overlap_share
-from blocksim.blocks.problem import Problem
-from blocksim.blocks.structure import structure_of
+from blocksim import Assembly, Joint, JointState, Problem, Verdict, equilibrium, structure_of
+from blocksim.blocks.assembly import SUPPORT
+from blocksim.blocks.joints import classify, joint_motion, overlap_and_slip
 from blocksim.engines.contact import banded, interior, path_following, solver
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.geometry import Geometry
 from blocksim.engines.contact.step import Answer, Step
 from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.engines.ground import ground_level
-from blocksim.kinds.files import structure_of as structure_of_kind
-from blocksim.limit import equilibrium
 from blocksim.simulation.observation import observe
-from blocksim.simulation.verdict import Verdict
+from tests.certificates import certificate
 
 MOVED = [
     "box2d_arch",
@@ -187,36 +183,6 @@ def test_a_smooth_ladder_leaves_its_wall_at_two_thirds_of_its_height(other_way: 
     assert np.abs(face[:, 1]).max() < 2e-3
 
 
-@pytest.mark.long
-def test_a_block_on_its_corner_falls_back_and_loses_what_housner_says() -> None:
-    """Corpus, `rocking_1x4_9`: time to the impact, speed there, and the share kept."""
-    angle, alpha = 0.22048079681417773, math.atan(1 / 4)
-    cos, sin = math.cos(-angle), math.sin(-angle)
-    flat = np.array([[-1, 0], [0, 0], [0, 4], [-1, 4]])
-    block = flat @ np.array([[cos, sin], [-sin, cos]])
-    problem = structure_of(
-        {"friction": 1.0, "blocks": [FLOOR, {"id": 1, "vertices": block.tolist()}]}
-    )
-    (joint,) = problem.assembly.joints
-    assert joint.is_corner
-    unit = math.sqrt(problem.assembly.size / 9.81)
-    world = world_of(problem, 2e-3)
-    speeds = [0.0]
-    for _ in range(2000):
-        world.advance(1)
-        speeds.append(float(world.velocities[0, 2]) / unit)
-    fastest = int(np.argmax(np.diff(speeds) < -0.01))
-    assert fastest * 2e-3 * unit == pytest.approx(1.5851416011526327, rel=2e-3)
-    assert speeds[fastest] == pytest.approx(0.4593210243805327, rel=2e-3)
-    after = speeds[fastest + 2] / speeds[fastest]
-    # The impact takes up to two steps, in each of which it is slowed by 0.002, too.
-    assert after == pytest.approx(1 - 1.5 * math.sin(alpha) ** 2, abs=5e-3)
-    # About the other corner it goes on to the height that is left.
-    turned = world.poses()[0, 2] - angle
-    assert 0 < turned < 0.1422
-    assert world.quality().penetration < 1e-4
-
-
 def test_a_block_slides_along_the_whole_face_and_tips_at_its_end() -> None:
     """The joint as built is 0.5 m long, the face of the support 4 m."""
     slope, mu, width = math.radians(30), 0.2, 0.5
@@ -342,7 +308,7 @@ def test_a_joint_that_is_given_ends_where_it_was_given() -> None:
 def falling_wall(courses: int = 8, length: float = 3) -> Problem:
     """A wall at 1.3 times the angle at which it can no longer rest (29.725 deg; `limit`)."""
     table = {"kind": "wall", "courses": courses, "length": length, "friction": 0.7}
-    wall = structure_of_kind(table)
+    wall = structure_of(table)
     return wall.tilted(math.radians(1.3 * 29.725116))
 
 
@@ -350,10 +316,10 @@ def test_contacts_that_are_told_are_found_no_better_on_a_path(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     # Its forces are known to 1e-9 and no better; a path of 900 systems once ended there, too.
-    def come_together(*_: object) -> None:
+    def path_from_apart(*_: object) -> None:
         raise AssertionError("a path is followed")
 
-    monkeypatch.setattr(solver, "come_together", come_together)
+    monkeypatch.setattr(solver, "path_from_apart", path_from_apart)
     onset = observe(falling_wall(), "direct", moving=False).onset
     assert onset.verdict is Verdict.COLLAPSES
 
@@ -368,14 +334,14 @@ def test_a_path_from_a_guess_is_short(monkeypatch: pytest.MonkeyPatch) -> None:
             return interior.central_path(step, cones, dilates=True)
         return np.zeros_like(step.free), np.zeros_like(cones.offset), 0
 
-    def put_right(step: Step, guess: Answer, *most: int) -> Answer | None:
-        end = path_following.put_right(step, guess, *most)
+    def path_from_guess(step: Step, guess: Answer, *most: int) -> Answer | None:
+        end = path_following.path_from_guess(step, guess, *most)
         systems.append(end.systems if end else 0)
         return end
 
     monkeypatch.setattr(solver, "central_path", central_path)
-    monkeypatch.setattr(solver, "put_right", put_right)
-    monkeypatch.setattr(solver, "come_together", lambda *_: pytest.fail("from all apart"))
+    monkeypatch.setattr(solver, "path_from_guess", path_from_guess)
+    monkeypatch.setattr(solver, "path_from_apart", lambda *_: pytest.fail("from all apart"))
     world = world_of(falling_wall(), 1e-3)
     assert np.abs(world.hold(1)).max() > 0.1
     assert (world.quality().residual or 0.0) < 1e-8
@@ -390,10 +356,14 @@ def test_rest_is_found_though_what_contacts_do_is_not(
     mu: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Steep friction does not tell it by its forces; nor is there any need to know."""
-    for name, found in (("settle", []), ("put_right", None), ("come_together", None)):
+    for name, found in (
+        ("by_active_set", []),
+        ("path_from_guess", None),
+        ("path_from_apart", None),
+    ):
         monkeypatch.setattr(solver, name, lambda *_, found=found: found)
     table = {"kind": "wall", "length": 2, "courses": 5, "friction": 0.7}
-    upright = replace(structure_of_kind(table), mu=mu)
+    upright = replace(structure_of(table), mu=mu)
     low, high = 0.2, 1.2
     while high - low > 1e-10:
         middle = (low + high) / 2
@@ -433,7 +403,7 @@ def test_corners_open_and_slide_and_are_no_length() -> None:
     motion = joint_motion(assembly, down)
     assert motion.gap[:, 0] == pytest.approx([-0.01, 0.0], abs=1e-12)
     assert np.abs(motion.slip) == pytest.approx([0.0, 0.01], abs=1e-12)
-    assert overlap_share(assembly, down) == pytest.approx(1.0)
+    assert overlap_and_slip(assembly, down)[0] == pytest.approx(1.0)
     closed, slides, opened = JointState.CLOSED, JointState.SLIDES, JointState.OPEN
     for shift, states in (
         ([0.0, 0.01, 0.0], [opened, slides]),
@@ -485,6 +455,6 @@ def test_pushed_walls_are_not_left_open(
         "kind": "wall", "friction": friction, "length": length, "courses": courses,
         "block_height": height, "bond": bond, "live": [{"body": [1, 0]}],
     }  # fmt: skip
-    pushed = structure_of_kind(table).with_load(push)
+    pushed = structure_of(table).with_load(push)
     assert certificate(pushed).stands is False
     assert observe(pushed, "direct").verdict is Verdict.COLLAPSES

@@ -17,7 +17,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from running import inside
 
-from blocksim import Assembly, InputError, Problem, Verdict, ask, bracket, structure_of
+from blocksim import (
+    InputError,
+    Problem,
+    Verdict,
+    ask,
+    assembly_of_polygons,
+    bracket,
+    structure_of,
+)
 from blocksim.blocks import regions
 from blocksim.view.sheet import sheet_of
 from blocksim.view.sheetfigure import sheet_figure
@@ -177,9 +185,9 @@ def test_tolerances_are_those_of_the_blocks_at_the_joint():
     size, gap = 1e-3, 1 / 3e6
     pebble: Corners = [(0.0, gap), (size, gap), (size, gap + size), (0.0, gap + size)]
     with pytest.raises(InputError, match="block 2 = 'held by nothing'"):
-        Assembly.of_polygons([bed, pier, pebble], fixed=[0])
+        assembly_of_polygons([bed, pier, pebble], fixed=[0])
     larger = [(x / size, y - gap) for x, y in pebble]
-    assert len(Assembly.of_polygons([bed, pier, larger], fixed=[0]).joints) == 2
+    assert len(assembly_of_polygons([bed, pier, larger], fixed=[0]).joints) == 2
 
 
 def _counted(monkeypatch: pytest.MonkeyPatch) -> list[int]:
@@ -199,7 +207,7 @@ def test_the_first_overlap_is_enough(monkeypatch: pytest.MonkeyPatch):
     pairs = _counted(monkeypatch)
     square = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
     with pytest.raises(InputError, match="overlap of blocks 0 and 1"):
-        Assembly.of_polygons([square] * 2000, fixed=[0])
+        assembly_of_polygons([square] * 2000, fixed=[0])
     assert sum(pairs) <= 4 * 2000
 
 

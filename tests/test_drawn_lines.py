@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from running import inside
 
 from blocksim import InputError, ask, load_structure
+from blocksim.reading.asked import Reading
 from blocksim.reading.curves import arc, bezier, ellipse
-from blocksim.reading.drawing import Reading
 from blocksim.reading.loops import loops_of
 
 BED = {"layer": "0-Auflager"}
@@ -270,6 +270,11 @@ def test_what_is_refused_is_drawn_where_it_is(tmp_path: Path) -> None:
     said = inside(*asked)
     assert "held by nothing" in said.stderr
     assert 'id="marked-' in picture.read_text("utf-8")
+    # Of what is no drawing there is no picture, and it is named as without one.
+    (tmp_path / "wrong.dxf").write_text("no drawing")
+    said, plain = inside(*asked), inside(*asked[:-2], "--out", str(out))
+    assert said.stderr == plain.stderr
+    assert "wrong.dxf: file" in said.stderr
 
 
 def test_depth_is_of_any_structure_in_the_plane(tmp_path: Path) -> None:

@@ -11,14 +11,12 @@ from arches import on_a_slope
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from blocksim import Arch
+from blocksim import Arch, Assembly, Problem, equilibrium
 from blocksim.arch import limit
 from blocksim.arch.circular import Weight
 from blocksim.arch.reduction import Reduction
-from blocksim.blocks.assembly import PLANAR, Array, Assembly
-from blocksim.blocks.problem import Problem
+from blocksim.blocks.assembly import PLANAR, Array
 from blocksim.engines import get_engine
-from blocksim.limit import equilibrium
 
 angles = st.floats(30.0, 155.0)
 frictions = st.one_of(st.floats(0.2, 4.0), st.just(1e3))

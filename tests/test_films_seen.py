@@ -13,15 +13,13 @@ from numpy.typing import NDArray
 from PIL import Image
 
 import blocksim
+from blocksim import JointState, Problem, Recording
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.joints import JointState
-from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import Shaking
 from blocksim.engines.base import Quality, Settings
-from blocksim.simulation.recording import Recording
 from blocksim.view.drawing import words_of
 from blocksim.view.film import Film
-from blocksim.view.following import FARTHEST, eased
+from blocksim.view.following import FARTHEST
 from blocksim.view.style import DEAD, JOINTS, LIVE
 from blocksim.view.video import render, to_bytes
 
@@ -112,17 +110,6 @@ def test_every_block_is_in_every_frame(view: str, tmp_path: Path) -> None:
             for x, y in seen_at(film, number, centres).round().astype(int).tolist():
                 stone = decoded[number][y, x].astype(int)
                 assert stone[0] > stone[2] + 8  # no paper, no ground
-
-
-def test_the_camera_is_never_nearer_than_is_needed() -> None:
-    random = np.random.default_rng(0)
-    for _ in range(50):
-        times = np.linspace(0, 3, 61)
-        need = np.clip(random.uniform(0.1, 1.6, 61), None, 1.0)
-        fine, shares = eased(times, need, random.uniform(0.05, 0.8))
-        at = np.interp(times, fine, shares)
-        assert (at <= np.minimum.accumulate(need) + 1e-9).all()
-        assert (np.diff(shares) <= 1e-12).all()
 
 
 def test_colours_of_joints_are_those_of_their_states(tmp_path: Path) -> None:
@@ -243,3 +230,70 @@ def test_the_amount_of_a_spread_is_told_in_every_frame() -> None:
         assert label.words == f"supports moved {100 * time:.1f} mm"
     assert stage.carriers == {count - 2, count - 1}
     assert stage.speed == 0  # supports that move do not say that blocks still do
+
+
+def test_side_by_side_begins_near_and_keeps_every_block() -> None:
+    """Two falls in half a frame each: blocks take most of it, and none ever leaves it."""
+    film = Film([far_slider(), far_slider()], height=HEIGHT, slow=1)
+    alone = Film([far_slider()], height=HEIGHT, slow=1)
+
+    def wide(of: Film) -> float:
+        rest = of._stages[0].at(0.0).corners.reshape(-1, 3)
+        return float(np.ptp(of._views[0].places(rest)[:, 0])) / of._panels[0].width
+
+    assert wide(film) > 1.5 * wide(alone)
+    for seconds in np.linspace(0, film.seconds, 9).tolist():
+        share = film.share(seconds)
+        for stage, view, panel in zip(film._stages, film._views, film._panels, strict=True):
+            corners = stage.corners_at(seconds / math.sqrt(stage.assembly.size / 9.81))
+            places = view.places(corners.reshape(-1, 3))
+            places = view.centre + share * (places - view.centre)
+            assert (places[:, 0] > panel.x).all()
+            assert (places[:, 0] < panel.x + panel.width).all()
+
+
+def test_what_rounding_moves_does_not_still_move() -> None:
+    """A way of 1e-14 of the size from frame to frame is no motion; one of 1e-6 is."""
+    known = blocksim.load("column", friction=0.7)
+    count = len(known.assembly.blocks)
+    times = np.linspace(0, 2, 21)
+    moved = np.zeros((21, count, 3))
+    moved[:10, -1, 0] = 0.02 * np.arange(10)
+    for way, still in ((1e-14, True), (1e-6, False)):
+        moved[10:, -1, 0] = 0.2 + way * np.arange(11)
+        (stage,) = Film([recorded(known, moved, times)], height=HEIGHT)._stages
+        assert (stage.speed == 0) is still
+
+
+def test_what_falls_has_no_line_of_thrust_at_rest() -> None:
+    """On a table tilted by 20 deg the column falls: its line is the nearest one."""
+    known = blocksim.load("column", friction=0.7)
+    times, still = np.linspace(0, 1, 3), np.zeros((3, len(known.assembly.blocks), 3))
+    for tilt, words in ((0.0, "line of thrust"), (math.radians(20), "nearest line of thrust")):
+        film = Film([recorded(known.tilted(tilt), still, times)], height=HEIGHT)
+        (stage,) = film._stages
+        if stage.thrust:
+            said = [told for told, _ in film._entries(set(), thrust=True)]
+            assert said == [f"{words} at rest"]
+
+
+def test_a_film_ends_with_the_last_block_in_sight(tmp_path: Path) -> None:
+    """All blocks slide away together: in the last frame one is still seen."""
+    problem = blocksim.load("wall", friction=0.7)
+    count = len(problem.assembly.blocks)
+    times = np.linspace(0, 5, 81)
+    moved = np.zeros((len(times), count, 3))
+    moved[..., 0] = 12.0 * times[:, None]
+    run = recorded(problem, moved, times)
+    film = Film([run], height=HEIGHT, slow=1)
+    (stage,) = film._stages
+    assert film.seconds < stage.end * math.sqrt(stage.assembly.size / 9.81)
+    assert film.speed > 0
+    last = film.count - 1
+    places = seen_at(film, last, moment_of(film, last).corners.reshape(-1, 3))
+    assert ((places > 0) & (places < [film.width, film.height])).all(axis=1).any()
+    # The camera draws back no farther, and half a moment later nothing would be seen.
+    assert film.share(film.seconds) == pytest.approx(FARTHEST, rel=0.01)
+    render([run], tmp_path / "away.mp4", height=HEIGHT, slow=1)
+    drawn, empty = frames_of(tmp_path / "away.mp4")[-1], film.frame(last)[..., :3]
+    assert np.abs(drawn.astype(int) - empty).mean() < 3

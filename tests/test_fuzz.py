@@ -71,7 +71,7 @@ def test_what_is_spoilt_was_good(name: str, nursery: Nursery, tmp_path: Path) ->
 def test_briefly(kind: str, nursery: Nursery, tmp_path: Path) -> None:
     health = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 
-    @settings(max_examples=8, phases=[Phase.generate], suppress_health_check=health)
+    @settings(max_examples=3, phases=[Phase.generate], suppress_health_check=health)
     @given(ATTACKS[kind]())
     def attacked(attack: Attack) -> None:
         found, ended = faults(nursery, attack, tmp_path / "run")

@@ -63,6 +63,20 @@ def test_while_it_starts(delay: float, sent: signal.Signals) -> None:
     interrupted(imports, delay, sent, "bracket", *ARCH, *SLOW)
 
 
+def test_while_a_string_runs(tmp_path: Path) -> None:
+    """Python would end by SIGINT, whichever signal came."""
+    (tmp_path / "program.py").write_text(
+        "import blocksim.cli as cli, sys\n"
+        "cli.run = lambda: exec('import os; os.kill(os.getpid(), 15)')\n"
+        "sys.argv, sys.orig_argv = ['blocksim'], ['blocksim']\n"
+        "cli.main()"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-m", "program"], cwd=tmp_path, capture_output=True, check=False
+    )
+    assert (ended.returncode, ended.stderr) == (CODES[signal.SIGTERM], LINE)
+
+
 MOMENT = ("sweep", 0.5, signal.SIGINT)
 """test_processes has one of `validate`, with workers that are at work."""
 
@@ -80,7 +94,7 @@ def test_while_workers_start(
     out = tmp_path / "out"
     asked = {
         "validate": ("validate", "--full", "--out", str(out)),
-        "sweep": (*written(tmp_path, SIMULATED.replace("count = 40", "count = 4000")),),
+        "sweep": (*written(tmp_path, SIMULATED.replace("count = 20", "count = 4000")),),
     }
     interrupted(children, delay, sent, *asked[command])
     assert not list(tmp_path.rglob("*.part"))

@@ -13,8 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from running import inside as blocksim
 
-from blocksim.blocks.problem import Problem
-from blocksim.kinds.files import structure_of
+from blocksim import Problem, structure_of
 from blocksim.limit.intervals import over_factor, over_tilt
 
 REACH, HIGH = 1.0, 0.3

@@ -11,18 +11,10 @@ from kind_cases import CATENARY, LEAST, PIERS
 from running import inside as blocksim
 from structure_cases import case
 
-from blocksim import load_recording
+from blocksim import InputError, Problem, Verdict, bracket, check, load_recording, structure_of
 from blocksim.arch.limit import least_thickness
-from blocksim.ask.bracket import bracket
-from blocksim.ask.check import check
 from blocksim.ask.families import families_of, family_of
-from blocksim.blocks.problem import Problem
-from blocksim.common.errors import InputError
 from blocksim.kinds import KINDS
-from blocksim.kinds.files import structure_of
-from blocksim.simulation.verdict import Verdict
-
-MU = {"semicircle_40_mu315": 0.315, "semicircle_40_mu35": 0.35}
 
 
 def exact(problem: Problem, over: str) -> float | None:
@@ -48,27 +40,11 @@ def test_least_thickness_of_rings_is_exact(half: float, mu: float, voussoirs: in
     assert exact(ring, "thickness") == pytest.approx(want, rel=1e-10)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "semicircle_40_mu315",
-        "pointed_e0_5",
-        *(
-            pytest.param(name, marks=pytest.mark.long)
-            for name in ("rampant_100_60", "ellipse_b0_5", "parabola_f0_5")
-        ),
-    ],
-)
-def test_published_least_thickness(name: str) -> None:
-    arch = structure_of({**LEAST[name], "friction": MU.get(name, "inf")})
-    assert exact(arch, "thickness") == pytest.approx(case(name)["expected"]["value"], rel=1e-6)
-
-
 def test_vertical_joints_and_the_catenary() -> None:
     """0.1095 (as published), and nothing at all."""
     vertical = structure_of({**LEAST["semicircle_vertical_joints"], "friction": "inf"})
     assert exact(vertical, "thickness") == pytest.approx(0.1095, abs=5e-5)
-    chain = bracket(family_of(structure_of({**CATENARY, "friction": "inf"}), "thickness"))
+    chain = bracket(structure_of({**CATENARY, "friction": "inf"}), over="thickness")
     assert chain.limit == 0
     assert chain.low is None
     assert chain.high is not None
@@ -239,30 +215,6 @@ def test_a_kind_by_its_name() -> None:
     pushed = ("column", "--mu", "0.9", "--with", 'live=[{"body": [1, 0]}]', "--json")
     factor = json.loads(blocksim("check", *pushed).stdout)["load_factor"]
     assert factor == pytest.approx(1 / 3.6, rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        (["pointed-arch"], "--mu is missing: must be given"),
-        (["pointed-arch", "--mu", "1", "--with", "radius"], "--with = 'radius': must be name="),
-        (
-            ["pointed-arch", "--mu", "1", "--with", "thickness=9"],
-            "--with = 'thickness=9': must be 1e-06 to 0.589409 m",
-        ),
-        (
-            ["column", "--mu", "1", "--with", "heigth=9"],
-            "--with = 'heigth=9': must be left out: a column has drums, ",
-        ),
-        (["column", "--mu", "1", "--alpha", "9"], "--alpha = 9.0: must be left out: "),
-        (["semicircle", "--with", "drums=9"], "--with = 'drums=9': must be left out: it is "),
-    ],
-)
-def test_wrong_options_of_kinds_are_named(given: list[str], said: str) -> None:
-    done = blocksim("check", *given)
-    assert done.returncode == 2
-    assert done.stderr.startswith(f"blocksim: {said}")
-    assert done.stderr.count("\n") == 1
 
 
 def test_kinds_are_listed() -> None:

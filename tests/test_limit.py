@@ -15,14 +15,11 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from scipy.optimize import brentq, linprog
-from scipy.sparse import coo_matrix
+from own_balance import violation
+from scipy.optimize import brentq
 
+from blocksim import Arch, InputError, Mode
 from blocksim.arch import limit, theory
-from blocksim.arch.circular import Arch
-from blocksim.arch.modes import Mode
-from blocksim.blocks.assembly import SUPPORT, Assembly
-from blocksim.common.errors import InputError
 
 degrees = st.floats(10, 158)
 friction = st.one_of(st.floats(0.1, 10.0), st.just(math.inf))
@@ -43,61 +40,6 @@ ARCHES = [
     (148, 1.8, 23, "sector", Mode.RS),
     (155, math.inf, 22, "centreline", Mode.R),
 ]
-
-
-def violation(
-    assembly: Assembly, mu: float, thickness_used: float = 1.0, friction_used: float = 1.0
-) -> float:
-    """Least excess over strength at any joint, at most 0.01 below it, in units of weight.
-
-    Unknowns are the normal force, the shear and the moment about the middle of every
-    joint, as its `before` acts on its `after`, and the excess v:
-    |M| <= share L/2 N + v and |T| <= share mu N + v.
-    """
-    joints, blocks = assembly.joints, assembly.blocks
-    unit = sum(block.mass for block in blocks) / len(blocks)
-    entries: list[tuple[int, int, float]] = []
-    for index, joint in enumerate(joints):
-        middle = (joint.inner + joint.outer) / 2
-        for body, sign in ((joint.after, 1.0), (joint.before, -1.0)):
-            if body == SUPPORT:
-                continue
-            arm = (middle - blocks[body].centre) / assembly.size
-            for column, axis in ((0, joint.normal), (1, joint.tangent)):
-                turning = arm[0] * axis[1] - arm[1] * axis[0]
-                for row, value in enumerate((axis[0], axis[1], turning)):
-                    entries.append((3 * body + row, 3 * index + column, sign * value))
-            entries.append((3 * body + 2, 3 * index + 2, sign))
-    size = 3 * len(joints) + 1
-    rows, columns, values = zip(*entries, strict=True)
-    balance = coo_matrix((values, (rows, columns)), shape=(3 * len(blocks), size))
-    load = np.zeros((len(blocks), 3))
-    load[:, 1] = [block.mass / unit for block in blocks]
-    limits: list[np.ndarray] = []
-    for index, joint in enumerate(joints):
-        half = thickness_used * joint.length / assembly.size / 2
-        for offset, strength in ((2, half), (1, friction_used * mu)):
-            for sign in (1.0, -1.0):
-                if math.isinf(strength):
-                    continue
-                row = np.zeros(size)
-                row[3 * index + offset], row[3 * index], row[-1] = sign, -strength, -1.0
-                limits.append(row)
-    cost = np.zeros(size)
-    cost[-1] = 1.0
-    kinds = [(0, None), (None, None), (None, None)] * len(joints)
-    found = linprog(
-        cost,
-        A_ub=np.array(limits),
-        b_ub=np.zeros(len(limits)),
-        A_eq=balance.tocsr(),
-        b_eq=load.ravel(),
-        bounds=[*kinds, (-0.01, None)],
-        method="highs-ds",
-        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
-    )
-    assert found.status == 0, found.message
-    return float(found.fun)
 
 
 @pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES)
@@ -228,33 +170,6 @@ def test_monotone_in_friction(
     found = [each or math.inf for each in (low, high, unbounded)]
     assert found[0] * (1 + 1e-15) >= found[1]
     assert found[1] * (1 + 1e-15) >= found[2]
-
-
-@given(
-    degrees,
-    st.floats(0.1, 5.0),
-    counts,
-    weights,
-    st.floats(1e-3, 1e3),
-    st.floats(1e-3, 1e3),
-    st.floats(0.2, 3.0),
-)
-def test_size_depth_and_material_do_not_matter(
-    angle: float,
-    mu: float,
-    count: int,
-    weight: str,
-    radius: float,
-    depth: float,
-    ratio: float,
-) -> None:
-    common = {"half_angle": math.radians(angle), "voussoirs": count, "weight": weight}
-    least = limit.least_thickness(common["half_angle"], mu, count, weight).eta or 1.0
-    eta = min(least * ratio, 2.0)
-    plain = Arch(eta=eta, **common)
-    other = Arch(eta=eta, radius=radius, depth=depth, specific_weight=radius * 7, **common)
-    assert limit.stands(plain, mu) == limit.stands(other, mu)
-    assert limit.slack(plain, mu) == limit.slack(other, mu)
 
 
 def rotational(alpha: float) -> tuple[float, float]:

@@ -8,13 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
+from blocksim import Arch, InputError
 from blocksim.arch import theory
-from blocksim.arch.circular import Arch
 from blocksim.arch.limit import least_thickness, stands
 from blocksim.arch.limit.bulk import least_thickness_of_joints, which_stand
-from blocksim.arch.limit.halfplanes import Joints
-from blocksim.arch.limit.statics import half_joints, least_of
-from blocksim.common.errors import InputError
+from blocksim.arch.limit.halfplanes import Joints, half_joints
+from blocksim.arch.limit.statics import least_of
 
 
 @pytest.mark.parametrize("weight", ["centreline", "sector"])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from derivations import friction_line_slope, solve_onset, thrust_line_slope
 
-from blocksim.arch.modes import Mode
+from blocksim import Mode
 from blocksim.arch.theory.arrays import least_thicknesses
 from blocksim.arch.theory.critical import least_thickness
 from blocksim.arch.theory.lines import critical_moment, friction_line, thrust_line

@@ -138,11 +138,11 @@ def test_a_terminal_of_twenty_columns_in_the_c_locale(words: tuple[str, ...]) ->
     ("words", "closed"),
     [
         (FALLS, ">&- 2>&-"),
-        (FALLS, ">/dev/full"),
         *(
             pytest.param(words, closed, marks=LONG)
             for words, closed in (
                 (FALLS, ">&-"),
+                (FALLS, ">/dev/full"),
                 (QUESTION, "2>&-"),
                 (QUESTION, "<&-"),
                 (("doctor",), ">&- 2>&-"),

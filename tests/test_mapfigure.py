@@ -12,7 +12,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from blocksim.arch.modes import Mode
+from blocksim import Mode
 from blocksim.arch.theory import landmarks
 from blocksim.view.mapfigure import LARGEST_MU, MapPoint, map_figure
 from blocksim.view.mapshapes import map_shapes
@@ -110,7 +110,7 @@ def test_no_label_and_no_name_is_on_a_line(drawn: Figure) -> None:
         boxes = [text.get_window_extent() for text in [*labels(axes).values(), *names]]
         # In the strip of unbounded friction there are no lines.
         right = axes.transData.transform((LARGEST_MU, 0))[0]
-        for curve in (shapes.divide, shapes.first, shapes.equal, shapes.crown):
+        for curve in shapes.lines.values():
             order = np.argsort(curve.mu)
             mu = np.linspace(curve.mu.min(), curve.mu.max(), 20_000)
             eta = np.interp(mu, curve.mu[order], curve.eta[order])

@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 from running import inside
 
+from blocksim import Mode
 from blocksim.arch.circular import Weight
 from blocksim.arch.limit import least_thickness
-from blocksim.arch.modes import Mode
 from blocksim.arch.theory import landmarks
 from blocksim.view.linemap import line_map_figure
 from blocksim.view.mapfigure import MapPoint, map_figure
@@ -166,23 +166,6 @@ def test_the_numbers_are_a_csv_file(weight: Weight, tmp_path: Path) -> None:
     told = [(each["name"], mode, each["eta"]) for each in points for mode in each["modes"]]
     assert [(row["name"], row["mode"], float(row["eta"])) for row in rows] == told
     assert {row["weight"] for row in rows} == {weight}
-
-
-WRONG = {
-    "json and out": ("--json", "--out", "x.csv"),
-    "page of a weight": ("--out", "x.html", "--weight", "sector"),
-    "page of angles": ("--out", "x.html", "--phi"),
-    "numbers of lines": ("--out", "x.csv", "--lines"),
-    "no such weight": ("--out", "x.png", "--weight", "heavy"),
-}
-
-
-@pytest.mark.parametrize("words", WRONG.values(), ids=WRONG.keys())
-def test_what_does_not_go_together_is_told(words: tuple[str, ...], tmp_path: Path) -> None:
-    done = inside("map", *words, cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
 
 
 @WEIGHTS

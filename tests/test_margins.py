@@ -11,13 +11,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from structure_cases import scenes
 
+from blocksim import Arch, CircularArch, Problem, structure_of
 from blocksim.arch.carried import carried_by_arch
-from blocksim.arch.circular import Arch
 from blocksim.arch.limit.statics import least_thickness
-from blocksim.blocks.problem import Problem
-from blocksim.blocks.structure import structure_of
-from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.files import structure_of as kind_of
 from blocksim.limit import margins, reactions, resultants, thrust_range
 from blocksim.limit.margins import crown
 
@@ -76,7 +72,7 @@ def test_unbounded_friction_is_told_as_the_coefficient_it_takes() -> None:
 
 def test_the_safest_state_of_what_needs_nothing_bears_its_weight() -> None:
     """A plumb column needs neither width nor friction, and its joints carry what is above."""
-    problem = kind_of({"kind": "column", "friction": 0.6})
+    problem = structure_of({"kind": "column", "friction": 0.6})
     found = margins(problem)
     assert found.strength == 0.0
     assert found.forces is not None
@@ -86,7 +82,7 @@ def test_the_safest_state_of_what_needs_nothing_bears_its_weight() -> None:
 
 
 def test_level_blocks_need_neither_friction_nor_width() -> None:
-    found = margins(kind_of({"kind": "stack", "friction": 0.5}))
+    found = margins(structure_of({"kind": "stack", "friction": 0.5}))
     assert found.friction == 0.0
     plumb = margins(slope(1.0, 1.0, 0.0, 0.5))
     assert (plumb.width, plumb.friction, plumb.strength) == (0.0, 0.0, 0.0)
@@ -173,7 +169,7 @@ def test_a_squeezed_block_has_no_greatest_thrust() -> None:
 )
 def test_supports_bear_the_weight_and_its_moment(table: dict[str, Any]) -> None:
     """In every state that is told: forces and moments of supports balance the loads."""
-    problem = kind_of({"friction": 0.8, **table})
+    problem = structure_of({"friction": 0.8, **table})
     found = margins(problem)
     states = [found.forces]
     joint = crown(problem)
@@ -181,7 +177,7 @@ def test_supports_bear_the_weight_and_its_moment(table: dict[str, Any]) -> None:
         ends = thrust_range(problem, joint)
         assert ends is not None
         states += [each.forces for each in ends if each.forces is not None]
-    weight = problem.pull() * problem.unit_force
+    weight = problem.applied_forces() * problem.unit_force
     centres = problem.assembly.centres
     moment = (weight[:, 2] * problem.assembly.size).sum()
     moment += (centres[:, 0] * weight[:, 1] - centres[:, 1] * weight[:, 0]).sum()

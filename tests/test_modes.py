@@ -9,16 +9,11 @@ import pytest
 from arches import arch_at
 from click.testing import CliRunner
 
+from blocksim import Arch, CircularArch, JointState, Mode, bracket, check
 from blocksim.arch import limit, theory
-from blocksim.arch.circular import Arch
 from blocksim.arch.limit.mechanism import mechanism
-from blocksim.arch.modes import Mode
-from blocksim.arch.observed import observed_mode
-from blocksim.ask.bracket import bracket
-from blocksim.ask.check import check
-from blocksim.blocks.joints import JointState
+from blocksim.arch.modes import observed_mode
 from blocksim.cli import app
-from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.scenarios import load_scenario
 from blocksim.simulation.observation import observe
 from blocksim.studies.validate import validate_one

@@ -9,15 +9,12 @@ import pytest
 from arches import arch_at
 from structure_cases import case, scenes
 
+from blocksim import CircularArch, Problem, Verdict, structure_of
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.problem import Problem
-from blocksim.blocks.structure import structure_of
 from blocksim.engines.base import Quality, Settings
-from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.motion import EARLY, FINER, MOVED, QUIET, moving_run
 from blocksim.simulation.observation import hold, observe
 from blocksim.simulation.simulated import Simulation
-from blocksim.simulation.verdict import Verdict
 
 SWEEPS = 10
 FASTEST = 1e-3

@@ -15,13 +15,10 @@ from report_rows import ARCH, ROW, sliding
 from running import inside as blocksim
 
 import blocksim as package
-from blocksim import load_recording
-from blocksim.cli.tables import validation_lines, validation_table
-from blocksim.common.errors import InputError
+from blocksim import CircularArch, InputError, load_recording, load_structure
+from blocksim.cli.studies import validation_lines, validation_table
 from blocksim.common.files import json_text
 from blocksim.engines import get_engine
-from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.files import load_structure
 from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.report.answerwords import signed
 from blocksim.studies.validate import unasked
@@ -69,37 +66,6 @@ def test_what_rounds_to_nothing_has_no_sign() -> None:
 def test_direct_is_of_blocksims_version() -> None:
     assert get_engine("direct").version == package.__version__
     assert f"blocksim {package.__version__}\n" == blocksim("--version").stdout
-
-
-INSTEAD = {
-    ("bracket", "--alpha", "90"): "--friction-angle",
-    ("check", "--alpha", "90", "--mu", "1"): "--ratio",
-    ("check", "--alpha", "90"): "--friction-angle, --ratio",
-}
-"""What may be given in the place of what is missing."""
-
-
-@pytest.mark.parametrize(
-    ("asked", "named"),
-    [
-        (("check",), "--alpha, --mu and --eta are missing"),
-        (("check", "--alpha", "90"), "--mu and --eta are missing"),
-        (("check", "--alpha", "90", "--mu", "1"), "--eta is missing"),
-        (("check", "--mu", "1"), "--alpha and --eta are missing"),
-        (("simulate",), "--out, --alpha, --mu and --eta are missing"),
-        (("render",), "--out, --alpha and --mu are missing"),
-        (("bracket", "--alpha", "90"), "--mu is missing"),
-        (("sweep",), "DESIGN and --out are missing"),
-    ],
-)
-def test_all_missing_options_are_named(asked: tuple[str, ...], named: str) -> None:
-    done = blocksim(*asked)
-    # Who gives no half-angle may have measured the arch.
-    instead = " (or --span, --rise and --thickness, in m)" if "--alpha" in named else ""
-    if asked in INSTEAD:
-        instead = f" (or {INSTEAD[asked]})"
-    said = f"blocksim: {named}: must be given{instead}\n"
-    assert (done.returncode, done.stderr) == (2, said)
 
 
 def test_nothing_asked_is_help() -> None:

@@ -20,10 +20,7 @@ import pytest
 from running import inside
 
 import blocksim
-from blocksim import Arch, ask
-from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.files import load_structure, structure_of
-from blocksim.limit import collapse
+from blocksim import Arch, CircularArch, ask, collapse, load_structure, structure_of
 from blocksim.notebook import svg_of
 
 with warnings.catch_warnings():

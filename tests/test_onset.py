@@ -13,18 +13,14 @@ import numpy as np
 import pytest
 from arches import arch_at, bracket_at
 
-from blocksim import Arch
+from blocksim import Arch, CircularArch, Problem, Verdict, equilibrium
 from blocksim.arch import limit
 from blocksim.arch.circular import Weight
 from blocksim.arch.reduction import Reduction
 from blocksim.arch.theory.map import divide_friction
-from blocksim.blocks.problem import Problem
 from blocksim.engines import get_engine
 from blocksim.engines.contact import ContactProblem, Solution
-from blocksim.kinds.circular import CircularArch
-from blocksim.limit import equilibrium
 from blocksim.simulation.observation import hold, observe
-from blocksim.simulation.verdict import Verdict
 
 TWO_ANSWERS = [
     (125.023, 0.8594, 10, "centreline"),

@@ -17,13 +17,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 from running import inside
+from windows import Windows
 
+from blocksim import Mode
 from blocksim.arch import theory
-from blocksim.arch.modes import Mode
 from blocksim.arch.theory import equations
 from blocksim.studies import paper as study
-from blocksim.view.mapequations import NOTES
-from blocksim.view.paper import paper_figure
+from blocksim.view.paper import NOTES, paper_figure
 from blocksim.view.papersketches import FRICTION_SHOWN, HALF_DEPTH, RATE, moved_block
 from blocksim.view.style import FRICTION, MECHANISM, THRUST
 
@@ -444,6 +444,18 @@ def test_the_command_writes_figures_numbers_and_a_page(tmp_path: Path) -> None:
     assert max(float(row["relative_difference"]) for row in rows) <= 1e-13
     values = {row["name"]: float(row["printed"]) for row in rows}
     assert values["Table 1 eta_T"] == TABLE["T"]["eta"]
+
+
+def test_the_page_fits_a_phone_and_is_dark_in_the_dark(
+    windows: Windows, tmp_path: Path
+) -> None:
+    assert inside("paper", str(tmp_path), "--figure", "1").returncode == 0
+    address = (tmp_path / "index.html").as_uri()
+    page = windows.open(address, 390, 800, color_scheme="dark")
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+    assert "invert" in page.evaluate("getComputedStyle(document.querySelector('img')).filter")
+    # It loads its picture, and nothing else.
+    assert windows.wrong(address) == [(tmp_path / "fig01.svg").as_uri()]
 
 
 def test_a_number_that_is_not_met_is_an_exit_code(

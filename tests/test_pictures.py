@@ -12,8 +12,7 @@ import pytest
 from PIL import Image
 from running import inside
 
-from blocksim.ask.simulate import simulate
-from blocksim.kinds.files import load_structure
+from blocksim import load_structure, simulate
 
 STACK = {
     "title": "Two blocks on a floor",

@@ -14,15 +14,12 @@ import pytest
 from lemke import lemke, pivoted
 from test_contact import chain, dense, step_of
 
-from analysis.assemblies import drawn
+from blocksim import Arch, CircularArch, Problem, collapse, equilibrium
 from blocksim.arch import limit
-from blocksim.arch.circular import Arch
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.problem import Problem
 from blocksim.engines.contact import ContactProblem
 from blocksim.engines.direct import ENGINE, Blocks
-from blocksim.kinds.circular import CircularArch
-from blocksim.limit import collapse, equilibrium
+from tests.assemblies import drawn
 
 SAME = 1e-8
 SIDES = (0.9, 0.999, 1.001, 1.1)

@@ -10,11 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from structure_cases import first, names, of_each_kind, scenes
 
-from blocksim.blocks.assembly import SUPPORT, Assembly
-from blocksim.blocks.polygons import Body, assembly_of_bodies
+from blocksim import Assembly, Body, InputError, assembly_of_polygons, structure_of
+from blocksim.blocks.assembly import SUPPORT
+from blocksim.blocks.polygons import assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY
-from blocksim.blocks.structure import structure_of
-from blocksim.common.errors import InputError
 
 GROUND = [(-1, -1), (9, -1), (9, 0), (-1, 0)]
 
@@ -38,7 +37,7 @@ def wall(courses: int, bricks: int) -> list[list[tuple[float, float]]]:
 
 @pytest.mark.parametrize(("courses", "bricks"), [(1, 1), (2, 3), (5, 4)])
 def test_running_bond_has_the_joints_one_counts(courses: int, bricks: int):
-    assembly = Assembly.of_polygons(wall(courses, bricks), fixed=[0])
+    assembly = assembly_of_polygons(wall(courses, bricks), fixed=[0])
     heads = courses * (bricks - 1)
     beds = (courses - 1) * (2 * bricks - 1)
     assert len(assembly.joints) == bricks + heads + beds
@@ -49,7 +48,7 @@ def test_running_bond_has_the_joints_one_counts(courses: int, bricks: int):
 
 def test_the_sense_and_the_faces_of_a_joint():
     """On its support a brick's bed: upwards, inner to the right, on the whole top face."""
-    assembly = Assembly.of_polygons([box(0, 0, 2), GROUND, box(0.5, 1, 3)], fixed=[1])
+    assembly = assembly_of_polygons([box(0, 0, 2), GROUND, box(0.5, 1, 3)], fixed=[1])
     bed, upper = assembly.joints
     assert (bed.before, bed.after, bed.support) == (SUPPORT, 0, 0)
     assert (upper.before, upper.after, upper.support) == (0, 1, None)
@@ -63,17 +62,17 @@ def test_the_sense_and_the_faces_of_a_joint():
 
 
 def test_a_joint_of_equal_faces_needs_none():
-    assembly = Assembly.of_polygons([GROUND, box(0, 0), box(1, 0)], fixed=[0])
+    assembly = assembly_of_polygons([GROUND, box(0, 0), box(1, 0)], fixed=[0])
     head = assembly.joints[-1]
     assert (head.faces, head.normal.tolist()) == (None, [1, 0])
 
 
 def test_a_face_meets_several_blocks_and_two_blocks_meet_twice():
     """A beam on two posts, and a bridge-like block that stands on one base with two feet."""
-    assembly = Assembly.of_polygons([GROUND, box(0, 0), box(3, 0), box(0, 1, 4)], fixed=[0])
+    assembly = assembly_of_polygons([GROUND, box(0, 0), box(3, 0), box(0, 1, 4)], fixed=[0])
     assert pairs(assembly) == [(SUPPORT, 0), (SUPPORT, 1), (0, 2), (1, 2)]
     feet = [(0, 0), (1, 0), (1, 1), (3, 1), (3, 0), (4, 0), (4, 2), (0, 2)]
-    twice = Assembly.of_polygons([GROUND, feet], fixed=[0])
+    twice = assembly_of_polygons([GROUND, feet], fixed=[0])
     assert pairs(twice) == [(SUPPORT, 0)] * 2
     assert [joint.length for joint in twice.joints] == [1, 1]
 
@@ -81,13 +80,13 @@ def test_a_face_meets_several_blocks_and_two_blocks_meet_twice():
 def test_a_corner_on_a_face():
     """A diamond: half a unit of its diagonal to each side of where it stands."""
     diamond = [(1, 0), (2, 1), (1, 2), (0, 1)]
-    (joint,) = Assembly.of_polygons([GROUND, diamond], fixed=[0]).joints
+    (joint,) = assembly_of_polygons([GROUND, diamond], fixed=[0]).joints
     assert joint.is_corner
     assert joint.inner.tolist() == joint.outer.tolist() == [1, 0]
     assert joint.normal.tolist() == [0, 1]
     assert (joint.before, joint.after, joint.length) == (SUPPORT, 0, 0)
     # The corner is the support's: the normal still points from before into after.
-    (turned,) = Assembly.of_polygons(
+    (turned,) = assembly_of_polygons(
         [[(1, 0), (0, -1), (2, -1)], box(0, 0, 2)], fixed=[0]
     ).joints
     assert turned.is_corner
@@ -97,7 +96,7 @@ def test_a_corner_on_a_face():
 def test_corner_on_corner_is_no_joint():
     """Four bricks in a stack bond meet in one point: no joints across it."""
     four = [GROUND, box(0, 0), box(1, 0), box(0, 1), box(1, 1)]
-    assembly = Assembly.of_polygons(four, fixed=[0])
+    assembly = assembly_of_polygons(four, fixed=[0])
     assert pairs(assembly) == [(-1, 0), (-1, 1), (0, 1), (0, 2), (1, 3), (2, 3)]
 
 
@@ -115,7 +114,7 @@ def test_box2d_arch_has_the_corners_under_its_plank():
 def test_polygons_that_are_not_convex_move_as_one():
     """An L of three unit squares: area, centroid and inertia by hand, two convex parts."""
     angle = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
-    whole = Assembly.of_polygons([GROUND, angle], fixed=[0]).blocks[0]
+    whole = assembly_of_polygons([GROUND, angle], fixed=[0]).blocks[0]
     assert len(whole.parts) == 2
     assert whole.centre == pytest.approx([5 / 6, 5 / 6], abs=1e-14)
     assert whole.mass == pytest.approx(3 / STANDARD_GRAVITY, rel=1e-14)
@@ -159,7 +158,7 @@ def test_mended_and_said(corners: list[tuple[float, float]], said: str):
 
 def test_a_centre_of_weight_leaves_the_inertia():
     plain, moved = (
-        Assembly.of_polygons([GROUND, box(0, 0)], fixed=[0], centres=centres)
+        assembly_of_polygons([GROUND, box(0, 0)], fixed=[0], centres=centres)
         for centres in (None, [(0, 0), (0.3, 0.6)])
     )
     assert moved.blocks[0].centre.tolist() == [0.3, 0.6]
@@ -186,7 +185,7 @@ def test_refused_in_one_line(
     bodies: list[list[tuple[float, float]]], fixed: list[int], said: str
 ):
     with pytest.raises(InputError) as raised:
-        Assembly.of_polygons(bodies, fixed=fixed)
+        assembly_of_polygons(bodies, fixed=fixed)
     assert said in str(raised.value)
     assert "\n" not in str(raised.value)
 
@@ -200,9 +199,9 @@ def test_a_gap_that_is_nearly_a_joint_is_said_and_not_guessed():
         ]
     )
     assert any("nearly touching" in note and "n1 and n2" in note for note in notes)
-    assembly = Assembly.of_polygons(bodies, fixed=[0])
+    assembly = assembly_of_polygons(bodies, fixed=[0])
     assert pairs(assembly) == [(-1, 0), (-1, 1)]
-    closed = Assembly.of_polygons([GROUND, box(0, 0), box(1 + 4e-7, 0)], fixed=[0])
+    closed = assembly_of_polygons([GROUND, box(0, 0), box(1 + 4e-7, 0)], fixed=[0])
     assert pairs(closed) == [(-1, 0), (-1, 1), (0, 1)]
 
 
@@ -238,7 +237,7 @@ def test_found_joints_do_not_depend_on_how_it_is_drawn(
     blocks = scenes(name)[0]["blocks"]
     polygons = [np.array(block["vertices"]) for block in blocks]
     fixed = [at for at, block in enumerate(blocks) if block.get("fixed")]
-    first = Assembly.of_polygons(list(polygons), fixed=fixed)
+    first = assembly_of_polygons(list(polygons), fixed=fixed)
     turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
     if mirrored:
         turn = np.diag([-1.0, 1.0]) @ turn
@@ -249,7 +248,7 @@ def test_found_joints_do_not_depend_on_how_it_is_drawn(
         np.roll(polygons[at], rng.integers(9), axis=0)[:: rng.choice([-1, 1])] @ turn * scale
         for at in order
     ]
-    again = Assembly.of_polygons(drawn, fixed=[order.index(at) for at in fixed])
+    again = assembly_of_polygons(drawn, fixed=[order.index(at) for at in fixed])
     moving = [at for at in range(len(polygons)) if at not in fixed]
     back = [at for at in order if at not in fixed]
     found = _stretches(again, back, [at for at in order if at in fixed])

@@ -17,11 +17,10 @@ import numpy as np
 import pytest
 from mpmath import mpf
 
-from blocksim import Arch, bracket, check
+from blocksim import Arch, CircularArch, InputError, Mode, bracket, check
 from blocksim.arch import limit, theory
 from blocksim.arch.limit.bulk import least_thickness_of_joints
-from blocksim.arch.limit.statics import half_joints
-from blocksim.arch.modes import Mode
+from blocksim.arch.limit.halfplanes import half_joints
 from blocksim.arch.theory.map import at_points, divide_friction
 from blocksim.arch.theory.regions import (
     at_inner_sliding,
@@ -31,8 +30,6 @@ from blocksim.arch.theory.regions import (
     equal_angles,
     first_sliding,
 )
-from blocksim.common.errors import InputError
-from blocksim.kinds.circular import CircularArch
 from blocksim.report.answerwords import bracket_lines, check_lines
 
 WEIGHTS = ("centreline", "sector")

@@ -13,28 +13,29 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from arches import arch_at, held_in, mirrored, shuffled
+from arches import ARCHES as OF_ENGINES
+from arches import arch_at, held_in
 from scipy.spatial.transform import Rotation
 from structure_cases import case, scenes
 
 from analysis import rubble
-from blocksim.arch import limit
-from blocksim.arch.circular import Arch, Weight
-from blocksim.arch.modes import Mode
-from blocksim.arch.observed import observed_mode
-from blocksim.ask.check import check
-from blocksim.ask.simulate import simulate
-from blocksim.ask.simulate import simulate as simulate_problem
-from blocksim.blocks.assembly import SPATIAL, Array, Assembly
-from blocksim.blocks.problem import Problem
-from blocksim.blocks.structure import structure_of
-from blocksim.common.errors import InputError
+from blocksim import (
+    Arch,
+    Assembly,
+    CircularArch,
+    Mode,
+    Problem,
+    Verdict,
+    load_recording,
+    simulate,
+    structure_of,
+)
+from blocksim import simulate as simulate_problem
+from blocksim.arch.circular import Weight
+from blocksim.blocks.assembly import SPATIAL, Array
 from blocksim.engines.base import Engine
-from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.recorded import load_recording
 from blocksim.simulation.motion import lie_still
 from blocksim.simulation.observation import hold, observe
-from blocksim.simulation.verdict import Verdict
 
 pytest.importorskip("pybullet", exc_type=ImportError)
 
@@ -42,12 +43,7 @@ from blocksim.engines.boxes import Frame, unwound
 from blocksim.engines.bulletspace import State
 from blocksim.engines.pybullet import ENGINE, Bodies
 
-ARCHES: list[tuple[float, float, int, Weight, Mode]] = [
-    (90, 0.7, 9, "centreline", Mode.RRR),
-    (90, 0.35, 10, "centreline", Mode.SRR),
-    (145, 1.6, 17, "centreline", Mode.RRS),
-    (155, 3.0, 11, "centreline", Mode.RS),
-]
+ARCHES = OF_ENGINES["pybullet"]
 SIDES = [(0.99, Verdict.COLLAPSES), (1.01, Verdict.STANDS)]
 THIN = Arch(half_angle=math.pi / 2, eta=0.08, voussoirs=9)
 
@@ -59,37 +55,6 @@ def within(frame: Frame) -> Engine:
 
 def held(assembly: Assembly, mu: float, engine: Engine = ENGINE) -> tuple[Verdict, Array]:
     return held_in(engine, assembly, mu, sweeps=5000)
-
-
-@pytest.mark.parametrize(("ratio", "expected"), SIDES)
-@pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES)
-def test_both_sides_of_the_least_thickness(
-    angle: float,
-    mu: float,
-    count: int,
-    weight: Weight,
-    mode: Mode,
-    ratio: float,
-    expected: Verdict,
-) -> None:
-    """Onset test and moving run, 1 % below and above."""
-    assert limit.least_thickness(math.radians(angle), mu, count, weight).mode is mode
-    seen = observe(
-        CircularArch.of(arch_at(ratio, angle, mu, count, weight), mu).problem(), "pybullet"
-    )
-    assert seen.verdict is expected
-    assert seen.motion is not None
-    assert seen.motion.verdict is expected
-
-
-@pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES)
-def test_mode_just_below_the_least_thickness(
-    angle: float, mu: float, count: int, weight: Weight, mode: Mode
-) -> None:
-    arch = arch_at(0.995, angle, mu, count, weight)
-    seen = observe(CircularArch.of(arch, mu).problem(), "pybullet", moving=False)
-    assert seen.verdict is Verdict.COLLAPSES
-    assert observed_mode(seen.joints, arch) is mode
 
 
 ELSEWHERE = {
@@ -118,72 +83,6 @@ def test_where_the_arch_stands_does_not_matter(
     verdict, start = held(assembly, mu, ELSEWHERE[where])
     assert verdict is expected, mode
     assert start == pytest.approx(held(assembly, mu)[1], abs=1e-6)
-
-
-@pytest.mark.parametrize("degrees", [15, 30, 45, 60])
-@pytest.mark.parametrize(("ratio", "expected"), SIDES)
-def test_turned_by_any_angle_where_nothing_slides(
-    ratio: float, expected: Verdict, degrees: float
-) -> None:
-    assembly = arch_at(ratio, *ARCHES[0][:4]).assembly()
-    assert held(assembly, 0.7, within(Frame(math.radians(degrees))))[0] is expected
-
-
-@pytest.mark.parametrize(
-    "degrees", [*(pytest.param(each, marks=pytest.mark.long) for each in (15, 30)), 45]
-)
-@pytest.mark.parametrize(("ratio", "expected"), SIDES)
-def test_turned_friction_is_never_more_than_it_is(
-    ratio: float, expected: Verdict, degrees: float
-) -> None:
-    """Known limit: friction of two axes is cut to a cone, but not against the slip.
-
-    So it is where slip lies along one of the axes, or between them: off the axes of its
-    space Bullet may see sliding where there is none. That is why the plane lies along them.
-    """
-    angle, mu, count, weight, _ = ARCHES[1]
-    assembly = arch_at(ratio, angle, mu, count, weight).assembly()
-    said = held(assembly, mu, within(Frame(math.radians(degrees))))[0]
-    below = expected is Verdict.COLLAPSES
-    assert said is expected or (not below and said is Verdict.UNDECIDED)
-    assert below or degrees < 45 or said is expected
-
-
-@pytest.mark.parametrize(
-    "change", [pytest.param(mirrored, marks=pytest.mark.long), partial(shuffled, seed=1)]
-)
-@pytest.mark.parametrize(("ratio", "expected"), SIDES)
-def test_mirror_and_order_change_no_verdict(ratio: float, expected: Verdict, change) -> None:
-    for angle, mu, count, weight, _ in ARCHES[:2]:
-        assembly = arch_at(ratio, angle, mu, count, weight).assembly()
-        assert held(change(assembly), mu)[0] is expected
-
-
-@pytest.mark.parametrize("radius", [0.01, 100.0])
-@pytest.mark.parametrize(("ratio", "expected"), SIDES)
-def test_size_changes_nothing(ratio: float, expected: Verdict, radius: float) -> None:
-    """Radius and depth together: a deeper arch is another one in space."""
-    arch = arch_at(ratio, 90, 0.7, 9)
-    other = replace(arch, radius=radius, depth=radius)
-    verdict, start = held(other.assembly(), 0.7)
-    assert verdict is expected
-    assert start == pytest.approx(held(arch.assembly(), 0.7)[1], abs=1e-6)
-
-
-def test_same_motion_in_every_run() -> None:
-    first, second = (
-        simulate(
-            CircularArch.of(THIN, friction=0.6), method="pybullet", duration=0.5
-        ).state_hash
-        for _ in range(2)
-    )
-    assert first == second
-    assert (
-        simulate(
-            CircularArch.of(THIN, friction=0.3), method="pybullet", duration=0.5
-        ).state_hash
-        != first
-    )
 
 
 @pytest.mark.parametrize(
@@ -273,7 +172,7 @@ def test_let_go_blocks_touch_at_the_ends_of_joints_only(problem: Problem) -> Non
 def test_blocks_stay_in_the_plane() -> None:
     """Gravity lies in it: nothing leads out, in motion and as rubble."""
     problem = rubble.drawn(rubble.Case(14, "stack"))
-    recording = simulate_problem(problem, method="pybullet", duration=6.0)
+    recording = simulate_problem(problem, method="pybullet", duration=3.0)
     across = recording.poses[:, :, 3:]
     assert np.abs(recording.poses[-1, :, 2]).max() > 0.5
     assert np.abs(across).max() < 1e-6
@@ -287,14 +186,6 @@ def test_the_reason_names_bounded_friction() -> None:
     )
     rough = observe(CircularArch.of(thick, 20.0).problem(), "pybullet", moving=False)
     assert "pybullet took 10 as friction" in rough.reason
-
-
-@pytest.mark.parametrize("method", ["theory", "limit", "direct", "pymunk"])
-def test_planar_methods_take_no_lean(method: str) -> None:
-    with pytest.raises(InputError) as caught:
-        check(CircularArch.of(THIN, 0.7).problem().leaning(0.1), method=method)
-    assert caught.value.field == "method"
-    assert "pybullet" in str(caught.value)
 
 
 def test_other_spaces_do_not_disturb_a_held_one() -> None:
@@ -344,17 +235,18 @@ def test_an_arch_that_falls_stays_symmetric_and_falls_as_pymunk_has_it() -> None
 
     In pymunk with short steps: with its usual ones `direct` starts early.
     """
-    problem = CircularArch.of(arch_at(0.93, 90, 0.7, 15), 0.7).problem()
+    problem = CircularArch.of(arch_at(0.93, 90, 0.7, 9), 0.7).problem()
     bullet, fine = (
         simulate_problem(problem, method=name, duration=2.0, settings=settings)
         for name, settings in (("pybullet", {}), ("pymunk", {"step": 0.002}))
     )
     fallen, known = (run.poses[-1, :, :2] - run.poses[0, :, :2] for run in (bullet, fine))
-    assert known[7, 1] < -0.5
-    assert fallen[7, 1] == pytest.approx(known[7, 1], rel=0.02)
+    assert known[4, 1] < -0.5
+    assert fallen[4, 1] == pytest.approx(known[4, 1], rel=0.02)
     assert np.abs(fallen - fallen[::-1] * (-1, 1)).max() < 1e-3
 
 
+@pytest.mark.long
 def test_contacts_are_kept_where_an_arch_begins_to_turn() -> None:
     """Where bodies are built anew joints are open by a hair, and no step may miss them."""
     problem = rubble.drawn(rubble.Case(7, "arch"))
@@ -374,19 +266,6 @@ def test_a_block_on_its_head_lies_still() -> None:
         poses.append(world.poses())
         assert poses[-1][0, 2] == pytest.approx(angle, abs=1e-9)
     assert lie_still(THIN.assembly(), poses)
-
-
-@pytest.mark.long
-def test_a_wall_that_is_stuck_is_given_forces_of_equilibrium() -> None:
-    """From nothing it is open after all sweeps allowed; 1 % beyond its limit it falls."""
-    name = "grid_wall_5"
-    (scene,) = scenes(name)
-    problem, value = structure_of(scene), case(name)["expected"]["value"]
-    inside = observe(problem.with_load(0.99 * value), "pybullet", moving=False)
-    assert inside.verdict is Verdict.STANDS
-    assert "begun with forces of limit analysis" in inside.reason
-    outside = observe(problem.with_load(1.01 * value), "pybullet", moving=False)
-    assert outside.verdict is Verdict.COLLAPSES
 
 
 def test_blocks_let_go_start_neither_early_nor_late() -> None:

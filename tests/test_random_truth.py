@@ -8,8 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis import random_problems, random_truth
-from analysis.certificates import (
+from analysis import random_truth
+from blocksim import Problem, Verdict, check, collapse, equilibrium, structure_of
+from blocksim.engines.direct import ENGINE, Blocks
+from tests import random_problems
+from tests.certificates import (
     balance,
     certificate,
     cone_edges,
@@ -17,12 +20,8 @@ from analysis.certificates import (
     needed,
     unbalanced,
 )
-from analysis.random_problems import GROUPS, Case, Question, drawn, mirrored, renumbered
-from blocksim import Problem, collapse, structure_of
-from blocksim.ask.check import check
-from blocksim.engines.direct import ENGINE, Blocks
-from blocksim.limit import equilibrium
-from blocksim.simulation.verdict import Verdict
+from tests.images import mirrored, renumbered
+from tests.random_problems import GROUPS, Case, Question, drawn
 
 CHANGES = ("", "mirrored", "renumbered")
 
@@ -78,7 +77,9 @@ def test_wrong_forces_and_velocities_prove_nothing() -> None:
 def test_images_are_of_the_same_problem(group: int) -> None:
     asked = drawn(Case(len(GROUPS) + group, 16)).problem
     image = mirrored(asked)
-    np.testing.assert_allclose(image.pull(), asked.pull() * [-1, 1, -1], atol=1e-12)
+    np.testing.assert_allclose(
+        image.applied_forces(), asked.applied_forces() * [-1, 1, -1], atol=1e-12
+    )
     back = mirrored(image)
     for one, other in zip(back.assembly.joints, asked.assembly.joints, strict=True):
         np.testing.assert_allclose(one.inner, other.inner, atol=1e-12)
@@ -87,7 +88,9 @@ def test_images_are_of_the_same_problem(group: int) -> None:
     order = [block.centre.tolist() for block in asked.assembly.blocks]
     place = [order.index(block.centre.tolist()) for block in other.assembly.blocks]
     assert place != sorted(place)
-    np.testing.assert_allclose(other.pull(), asked.pull()[place], atol=1e-12)
+    np.testing.assert_allclose(
+        other.applied_forces(), asked.applied_forces()[place], atol=1e-12
+    )
     if asked.live:
         factors = [collapse(each).load_factor for each in (asked, image, other)]
         assert factors == pytest.approx([factors[0]] * 3, rel=1e-9)
@@ -114,10 +117,10 @@ def test_a_verdict_that_hangs_on_the_order_of_blocks_would_be_seen(
 
 
 def test_problems_are_drawn_alike_whatever_was_drawn_before() -> None:
-    first = drawn(Case(13, 16)).problem.pull()
+    first = drawn(Case(13, 16)).problem.applied_forces()
     drawn.cache_clear()
     drawn(Case(14, 16))
-    np.testing.assert_array_equal(drawn(Case(13, 16)).problem.pull(), first)
+    np.testing.assert_array_equal(drawn(Case(13, 16)).problem.applied_forces(), first)
     ratios = [drawn(Case(index, 12)).ratio for index in range(0, 200, 10)]
     assert all(0.5 <= ratio <= 2 and abs(ratio - 1) > 0.999e-3 for ratio in ratios)
     assert min(ratios) < 1 < max(ratios)
@@ -157,6 +160,7 @@ def test_blocks_that_turn_as_one_keep_their_contacts() -> None:
     assert np.ptp(turned) < 1e-9 < 1e-5 < abs(turned[0])
 
 
+@pytest.mark.long
 def test_what_gives_way_and_swings_about_another_place_is_said_to() -> None:
     """Statics prove that an arch cannot rest as built; moved by 1 in 1,300 it can."""
     problem = drawn(random_truth.case(5177)).problem

@@ -28,7 +28,7 @@ from drawn import (
 from running import inside
 
 from blocksim import InputError, Problem, ask, load_structure, structure_of
-from blocksim.reading.drawing import Reading
+from blocksim.reading.asked import Reading
 
 WALL = wall()
 """40 polygons."""
@@ -481,8 +481,7 @@ BROKEN = {
     "percent.svg": (lambda _: svg_of('<rect class="blocks" width="50%" height="1"/>'),
                     "width = '50%'"),
     # Assemblies of compas
-    "twisted.json": (lambda _: _twisted(), "neither along nor across"),
-    "behind.json": (lambda _: _behind(), "behind each other"),
+    "twisted.json": (lambda _: _twisted(), "dented by"),
     "faceless.json": (lambda _: _broken_node(face={}), "with faces"),
     "cornerless.json": (lambda _: _broken_node(vertex={}), "assembly of compas_assembly"),
     "lost.json": (lambda _: _broken_node(face={"0": [0, 1, 99]}), "compas_assembly"),

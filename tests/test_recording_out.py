@@ -20,7 +20,7 @@ from PIL import Image
 from running import inside
 
 from blocksim import Recording, ask, load_recording, structure_of
-from blocksim.view.gltf import write_gltf
+from blocksim.view.models import write_model
 
 HERE = Path(__file__).parent / "gltf"
 SIZE, G = 2.0, 9.81
@@ -180,7 +180,7 @@ def parts_of(data: bytes) -> tuple[dict, bytes]:
 
 def written(recording: Recording, kind: str = "glb") -> bytes:
     file = BytesIO()
-    write_gltf(recording, file, kind)
+    write_model(recording, file, kind)
     return file.getvalue()
 
 
@@ -307,6 +307,7 @@ def test_blocks_are_in_three_js_where_they_were_recorded(
         assert np.array(seen) == pytest.approx(expected[frame], abs=1e-6)
 
 
+@pytest.mark.long
 def test_a_film_in_three_js_shows_it_standing_falling_and_fallen(
     viewer: Any, fall: Recording
 ) -> None:

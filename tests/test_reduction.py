@@ -8,7 +8,6 @@ must not change an answer.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,23 +15,23 @@ from arches import arch_at
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from blocksim import (
+    Arch,
+    CircularArch,
+    Problem,
+    Verdict,
+    bracket,
+    check,
+)
 from blocksim.arch import limit
-from blocksim.arch.circular import Arch
 from blocksim.arch.limit import weakest_joints
-from blocksim.arch.limit.statics import half_joints
-from blocksim.arch.observed import observed_mode
+from blocksim.arch.limit.halfplanes import half_joints
+from blocksim.arch.modes import observed_mode
 from blocksim.arch.reduction import MIRROR, Reduction
-from blocksim.ask.bracket import bracket
-from blocksim.ask.check import check
-from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
-from blocksim.blocks.problem import Problem
-from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES, get_engine
-from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.observation import hold, observe
 from blocksim.simulation.onset import onset
 from blocksim.simulation.simulated import Simulation
-from blocksim.simulation.verdict import Verdict
 
 CASES = [
     (90, 0.7, 27, "centreline"),
@@ -167,37 +166,9 @@ def test_rates_are_those_of_rigid_blocks_and_their_mirror_images(drawn, columns,
     assert np.abs(rest[:, 2:]).max() == 0
 
 
-def on_a_slope(slope, smooth=False):
-    """One square block on a slope, with a joint to the ground beneath it."""
-    along = np.array([math.cos(slope), math.sin(slope)])
-    up = np.array([-along[1], along[0]])
-    corners = np.array([-along / 2, along / 2, along / 2 + up, -along / 2 + up])
-    block = Block(vertices=corners, centre=up / 2, mass=3.0, inertia=0.5, depth=1.0)
-    # Seen from the ground into the block, the inner end lies to the right.
-    joint = Joint(
-        SUPPORT, 0, inner=along / 2, outer=-along / 2, friction=0.0 if smooth else None
-    )
-    return Assembly(blocks=(block,), joints=(joint,), size=1.0)
-
-
 def placed(engine, assembly, mu):
     library = get_engine(engine)
     return library.build(Problem(assembly=assembly, mu=mu), library.rule(assembly))
-
-
-def test_a_block_rests_with_its_weight_below_its_centre(engine):
-    assembly = on_a_slope(0.3)
-    world = placed(engine, assembly, 1.0)
-    assert np.abs(world.hold(1000)).max() < 1e-5
-    expected = [0.0, 1.0, assembly.centres[0, 0]]
-    assert world.resultants()[0] == pytest.approx(expected, abs=EXACT[engine])
-
-
-def test_nothing_holds_a_block_on_a_smooth_slope(engine):
-    slope = 0.3
-    world = placed(engine, on_a_slope(slope, smooth=True), 1.0)
-    slides = -math.sin(slope) * np.array([math.cos(slope), math.sin(slope)])
-    assert world.hold(1000)[0, :2] == pytest.approx(slides, abs=1e-6)
 
 
 # What joints carry.
@@ -215,19 +186,6 @@ def test_resultants_obey_newton_for_every_voussoir(engine, voussoirs, ratio):
         left = unbalanced(arch.assembly(), world.resultants(), rates)
         # Bodies that overlap have two places for one force.
         assert np.abs(left).max() < EXACT[engine]
-
-
-@pytest.mark.parametrize("voussoirs", [26, 27])
-def test_resultants_are_those_of_all_voussoirs(voussoirs):
-    """In a collapse hinges fix the resultants; at rest there is a choice."""
-    arch = arch_at(0.97, 90, 0.7, voussoirs)
-    every = Simulation.of(CircularArch.of(arch, 0.7).problem(), "direct").world()
-    few = Simulation.of(
-        CircularArch.of(arch, 0.7).problem(), "direct", reduction=Reduction.of(arch, 0.7)
-    ).world()
-    every.hold(1)
-    few.hold(1)
-    assert few.resultants() == pytest.approx(every.resultants(), abs=1e-7)
 
 
 # Whether the guess was right.
@@ -255,29 +213,11 @@ def test_without_a_second_look_a_wrong_guess_would_stand():
     wrong = Reduction(arch.assembly(), (0, 14))
     simulation = Simulation.of(CircularArch.of(arch, 0.7).problem(), "direct", reduction=wrong)
     world = simulation.world()
-    assert (
-        onset(world, simulation.engine, simulation.taken, simulation.settings).verdict
-        is Verdict.STANDS
-    )
+    assert onset(world, simulation).verdict is Verdict.STANDS
     assert wrong.overstrained(world.resultants(), 0.7, 1e-9)
     held = hold(CircularArch.of(arch, 0.7).problem(), "direct", reduction=wrong)
     assert held.onset.verdict is Verdict.COLLAPSES
     assert held.splits > 0
-
-
-def test_joints_that_slide_are_split_again():
-    """At 145 deg an inner joint slides, which is merged here with what lies around it."""
-    arch, mu = arch_at(0.99, 145, 1.6, 28), 1.6
-    right = Reduction.of(arch, mu).kept
-    assert len(right) == 4
-    merged = tuple(joint for joint in right if joint != right[2])
-    held = hold(
-        CircularArch.of(arch, mu).problem(),
-        "direct",
-        reduction=Reduction(arch.assembly(), merged),
-    )
-    assert held.splits > 0
-    assert accelerations(held) == pytest.approx(accelerations(every_joint(arch, mu)), abs=1e-9)
 
 
 def test_forces_beyond_a_joint_or_its_friction_are_seen():
@@ -420,18 +360,6 @@ def test_brackets_are_those_of_all_voussoirs(method, voussoirs):
     assert f"{few.blocks} instead of {voussoirs} blocks" in few.reason
 
 
-def test_where_no_thickness_stands_none_is_found():
-    found = bracket(
-        CircularArch(
-            half_angle=math.radians(157), friction=2.0, voussoirs=20, weight="centreline"
-        ),
-        method="direct",
-        reduce=True,
-    )
-    assert found.arch.eta_limit is None
-    assert found.arch.eta_high is None
-
-
 @pytest.mark.parametrize("voussoirs", [14, 15])
 def test_let_go_it_moves_as_all_voussoirs_do(voussoirs):
     arch = arch_at(0.98, 125, 0.9, voussoirs)
@@ -462,36 +390,3 @@ def test_the_answer_tells_what_was_simulated(engine):
     assert usual.blocks == (27 if engine == "direct" else 3)
     assert check(CircularArch.of(arch, friction=0.7), method=engine, reduce=False).blocks == 27
     assert check(CircularArch.of(arch, friction=0.7), method="limit").blocks is None
-
-
-def test_scale_and_density_change_nothing():
-    arch = arch_at(0.98, 125, 0.9, 27)
-    other = replace(arch, radius=64.0, depth=0.25, specific_weight=16_000.0)
-    one, two = (
-        hold(CircularArch.of(a, 0.9).problem(), "direct", reduction=Reduction.of(a, 0.9))
-        for a in (arch, other)
-    )
-    assert accelerations(one) == pytest.approx(accelerations(two), abs=1e-12)
-
-
-@pytest.mark.parametrize("method", ["auto", "theory", "limit"])
-def test_there_is_nothing_to_reduce_where_nothing_is_simulated(method):
-    with pytest.raises(InputError, match="reduce"):
-        check(
-            CircularArch.of(arch_at(1.0, 90, 0.7, 27), friction=0.7), method=method, reduce=True
-        )
-
-
-def test_out_of_the_plane_nothing_is_reduced():
-    with pytest.raises(InputError, match="reduce"):
-        check(
-            CircularArch.of(arch_at(1.0, 90, 0.7, 27), 0.7).problem().leaning(0.1),
-            method="pybullet",
-            reduce=True,
-        )
-    pytest.importorskip("pybullet")
-    thick = Arch(half_angle=math.radians(60), eta=0.4, voussoirs=3)
-    assert (
-        check(CircularArch.of(thick, 1.0).problem().leaning(0.01), method="pybullet").blocks
-        == 3
-    )

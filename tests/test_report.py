@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 from report_rows import ARCH, ROW, rows, sliding
 
+from blocksim import Verdict
 from blocksim.report.motion import KEYS, SHOWN, UNIT, joints_of, recorded_drawing
 from blocksim.report.page import report_page, summary
 from blocksim.report.tables import write_results
-from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import numbered
 
 MAP = (
@@ -221,15 +221,3 @@ def test_written_with_the_rest(tmp_path: Path) -> None:
     assert "recording" not in record
     assert record["title"] == "The semicircular arch"
     assert ARCH.voussoirs == record["voussoirs"]
-
-
-def luminance(name: str) -> float:
-    """Relative luminance as WCAG 2 defines it."""
-    shares = [int(name[place : place + 2], 16) / 255 for place in (1, 3, 5)]
-    linear = [s / 12.92 if s <= 0.04045 else ((s + 0.055) / 1.055) ** 2.4 for s in shares]
-    return float(np.dot(linear, [0.2126, 0.7152, 0.0722]))
-
-
-def contrast(one: str, other: str) -> float:
-    low, high = sorted((luminance(one), luminance(other)))
-    return (high + 0.05) / (low + 0.05)

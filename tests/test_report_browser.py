@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from itertools import product
 
 import pytest
 from matplotlib.colors import to_rgb
 from report_rows import ROW, rows
+from vision import contrast
 from windows import Windows
 
-from blocksim.arch.modes import Mode
-from blocksim.kinds.known import load_known
+from blocksim import Mode
+from blocksim.kinds.loading import load_known
 from blocksim.report.tables import write_results
 from blocksim.studies.structures import validate_structures
 from blocksim.view.style import MODES
@@ -65,8 +67,9 @@ def test_it_plays_to_the_end_and_can_be_stopped(page, windows: Windows) -> None:
     button, slider = figure.locator("button"), figure.locator("input")
     button.focus()
     page.keyboard.press("Enter")
-    page.wait_for_timeout(300)
-    assert button.inner_text() == "Stop"
+    playwright.expect(button).to_have_text("Stop")
+    # It stands at its end before.
+    playwright.expect(slider).to_have_value(re.compile(r"^0\.\d+$"))
     page.keyboard.press("Enter")
     stopped = float(slider.input_value())
     assert 0 < stopped < 1
@@ -202,16 +205,8 @@ def test_names_of_modes_can_be_read(page) -> None:
         assert len(looks) > 3
         for ink, ground in looks:
             assert (sum(ground) / 765 > 0.5) is (scheme == "light")
-            high, low = sorted((luminance(ink), luminance(ground)), reverse=True)
-            assert (high + 0.05) / (low + 0.05) > 4.5
-
-
-def luminance(colour: list[int]) -> float:
-    linear = [
-        part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4
-        for part in (value / 255 for value in colour)
-    ]
-    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+            tones = ["#" + bytes(colour).hex() for colour in (ink, ground)]
+            assert contrast(*tones) > 4.5
 
 
 def test_names_are_written_as_they_are(page) -> None:

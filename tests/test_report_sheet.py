@@ -13,9 +13,8 @@ import pytest
 from running import inside
 from windows import Windows
 
-from blocksim.arch.circular import Arch
+from blocksim import Arch, CircularArch
 from blocksim.arch.limit import least_thickness
-from blocksim.kinds.circular import CircularArch
 from blocksim.limit import margins, reactions, thrust_range
 from blocksim.limit.margins import crown
 
@@ -203,31 +202,6 @@ def test_a_thickness_that_was_not_given_is_told(tmp_path: Path) -> None:
     assert "no thickness was given, so it is 0.99 of the least as built" in text
 
 
-def test_wrong_input_is_one_line(tmp_path: Path) -> None:
-    for asked, words in (
-        (("semicircle", "--eta", "0.12", "--out", str(tmp_path / "x.txt")), "ending in .html"),
-        (("--alpha", "90", "--mu", "0.7", "--out", str(tmp_path / "x.html")), "--eta"),
-        (("semicircle", "--eta", "0.12"), "--out"),
-        (
-            (
-                "semicircle",
-                "--eta",
-                "0.12",
-                "--method",
-                "theory",
-                "--out",
-                str(tmp_path / "x.html"),
-            ),
-            "of the blocks as built",
-        ),
-    ):
-        found = inside("report", *asked)
-        assert found.returncode == 2
-        assert words in found.stderr
-        assert found.stderr.count("\n") == 1
-    assert not [*tmp_path.iterdir()]
-
-
 PAPER = (182, 273)
 """What is printed on of A4, less the margins of the page [mm]."""
 MM = 96 / 25.4
@@ -249,10 +223,10 @@ def test_it_fits_the_paper(windows: Windows, pages: Path, name: str) -> None:
       && !each.closest(".unseen")).length""")
     assert over == 0
     # The drawing is as wide as it says: its scale is true.
-    box = page.locator("svg.sheet").bounding_box()
+    box = page.locator("#drawing svg.sheet").bounding_box()
     assert box["width"] == pytest.approx(PAPER[0] * MM, abs=1.0)
     tall = "e => e.viewBox.baseVal.height / e.viewBox.baseVal.width"
-    share = page.locator("svg.sheet").evaluate(tall)
+    share = page.locator("#drawing svg.sheet").evaluate(tall)
     assert box["height"] == pytest.approx(share * box["width"], abs=1.0)
     # What may not be cut is no taller than a page.
     heights = page.evaluate("""() => [...document.querySelectorAll(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import itertools
 import math
 import re
 import xml.etree.ElementTree as ET
@@ -18,21 +17,21 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from running import inside
 
-from blocksim.arch.circular import Arch
-from blocksim.ask.carried import carried_of
-from blocksim.ask.check import check
+from blocksim import (
+    Arch,
+    CircularArch,
+    InputError,
+    Problem,
+    check,
+    load_structure,
+    structure_of,
+)
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.problem import Problem
-from blocksim.blocks.structure import structure_of
-from blocksim.common.errors import InputError
-from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.files import load_structure
-from blocksim.kinds.files import structure_of as kind_of
-from blocksim.view.drawing import save_figure
-from blocksim.view.sheet import A4, Sheet, answer_sheet, scale_for, scale_words, sheet_of
-from blocksim.view.sheetdxf import LAYERS, outline, write_dxf
+from blocksim.kinds.offers import carried_of
+from blocksim.view.drawing import outline, save_figure
+from blocksim.view.sheet import Sheet, answer_sheet, scale_for, scale_words, sheet_of
+from blocksim.view.sheetdxf import LAYERS, write_dxf
 from blocksim.view.sheetfigure import sheet_figure
-from blocksim.view.sheetlayout import Layout
 from blocksim.view.thrustlines import is_chained, thrust_lines
 from blocksim.view.units import force_unit
 
@@ -59,7 +58,7 @@ def engineers() -> Problem:
 
 
 def kind(name: str, **more: Any) -> Problem:
-    return kind_of({"kind": name, "friction": 0.6, **more})
+    return structure_of({"kind": name, "friction": 0.6, **more})
 
 
 CASES = {
@@ -244,23 +243,6 @@ def test_no_words_cover_others_or_leave_the_page(name: str) -> None:
             assert not box.overlaps(other), (words, others)
 
 
-def test_words_make_way_for_others() -> None:
-    sheet, _ = drawn("column")
-    figure = sheet_figure(sheet)
-    low = np.array([figure.axes[0].get_xlim()[0], figure.axes[0].get_ylim()[0]])
-    layout = Layout(paper=A4[1], scale=20.0, low=low, edge=12.0, bar=16.0)
-    axes = figure.axes[0]
-    for _ in range(3):
-        layout.write(axes, low + 1.0, "thrust 1.000 kN/m", (0.0, 1.0), ha="center")
-    boxes = layout.words
-    assert len(boxes) == 3
-    assert not any(one.overlaps(two) for one, two in itertools.combinations(boxes, 2))
-    # Out of the way as told: upwards, no further than they have to.
-    assert len({box.x0 for box in boxes}) == 1
-    assert boxes[0].y1 < boxes[1].y0 < boxes[1].y1 < boxes[2].y0
-    assert boxes[2].y0 - boxes[1].y1 < boxes[0].height
-
-
 @pytest.mark.parametrize("name", SEEN)
 def test_the_scale_that_is_told_is_true_on_paper(name: str) -> None:
     """Measured in the svg: corners of a block in points."""
@@ -306,10 +288,11 @@ def test_usual_scales() -> None:
 
 
 def test_a_legend_is_of_what_is_there() -> None:
-    assert legend(drawn("wall")[1]) == {"support", "contact force, largest 0.48 N"}
+    little = "joint, up to 50 % used"
+    assert legend(drawn("wall")[1]) == {"support", "contact force, largest 0.48 N", little}
     assert legend(drawn("column")[1]) == {
         "support", "line of thrust: greatest margin", "reaction at greatest margin",
-        "force along it: this wide at 3.600 N/m",
+        "force along it: this wide at 3.600 N/m", little,
     }  # fmt: skip
     falls = legend(drawn("falls")[1])
     assert falls == {
@@ -318,7 +301,7 @@ def test_a_legend_is_of_what_is_there() -> None:
     }  # fmt: skip
     assert "slides" in legend(drawn("slides")[1])
     stands = legend(drawn("engineer's")[1])
-    assert len(stands) == 6
+    assert len(stands) == 7
     assert not [each for each in stands if "hinge" in each or "mechanism" in each]
 
 

@@ -9,7 +9,7 @@ from space_cases import NAMES, asked
 import blocksim
 from blocksim import Verdict
 from blocksim.engines import get_engine
-from blocksim.simulation.space import observe_in_space
+from blocksim.simulation.observation import observe
 
 ENGINES = ("pybullet", "mujoco")
 QUICK = ("block_topples_20", "plate_slides_25", "tower_102", "tower_113", "harmonic_4_out")
@@ -33,7 +33,7 @@ def test_no_case_is_told_falsely(case: str, name: str) -> None:
     """What an engine does not find is open, never false; by the onset test."""
     pytest.importorskip(name, exc_type=ImportError)
     for problem, verdict in asked(case, 0.01):
-        seen = observe_in_space(problem, get_engine(name), moving=False)
+        seen = observe(problem, get_engine(name), moving=False)
         assert seen.verdict in (verdict, Verdict.UNDECIDED)
 
 

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 import base64
+import csv
 import json
 import re
 import struct
+from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from running import inside
 from scipy.spatial.transform import Rotation
 
 import blocksim
-from blocksim.blocks.joints import JointState
+from blocksim import JointState, Recording
+from blocksim.blocks.record import to_record
 from blocksim.engines.base import Quality, Settings
-from blocksim.simulation.space import SpatialRecording
-from blocksim.view.gltfspace import UPRIGHT, mechanism_model, write_recording
-from blocksim.view.solidfilm import SolidFilm
-from blocksim.view.solidjoints import force_lines, states_at
+from blocksim.report.sheetpage import structure_page
+from blocksim.view.film import Film
+from blocksim.view.models import UPRIGHT, mechanism_model, write_model
+from blocksim.view.solidscene import force_lines, states_at
 from blocksim.view.style import JOINTS
 from blocksim.view.turning import turning_page
 from blocksim.view.video import to_bytes
@@ -29,23 +34,27 @@ def tower() -> Any:
     return blocksim.Tower(blocks=3, offset=0.1, turn_deg=0, friction=0.7).problem()
 
 
+def cuboid(low: float, high: float) -> Any:
+    return [[x, y, z] for x in (0, 1) for y in (0, 0.6) for z in (low, high)]
+
+
 def thin_dome() -> Any:
     return blocksim.Dome(thickness=0.03, lunes=6, courses=4, friction=0.7).problem()
 
 
-def recording(moved: np.ndarray, times: np.ndarray) -> SpatialRecording:
+def recording(moved: np.ndarray, times: np.ndarray) -> Recording:
     problem = tower()
     assembly = problem.assembly
     rest = np.zeros((len(assembly.blocks), 6))
     rest[:, :3] = assembly.centres / assembly.size
-    return SpatialRecording(
+    return Recording(
         problem=problem, engine="direct", engine_version="0",
         settings=Settings(step=0.01, sweeps=1, hold_sweeps=1), times=times,
         poses=rest + moved, quality=Quality(),
     )  # fmt: skip
 
 
-def tipping(angle: float = 0.5) -> SpatialRecording:
+def tipping(angle: float = 0.5) -> Recording:
     """The uppermost box turns about an edge of its bed; the others stay."""
     problem = tower()
     assembly = problem.assembly
@@ -74,12 +83,13 @@ def test_joints_are_coloured_by_what_they_are_seen_to_do() -> None:
     lifted = np.zeros((3, 6))
     lifted[2, 2] = 0.02
     assert JointState.OPEN in states_at(assembly, run.poses[0] + lifted)
-    film = SolidFilm(run, height=300, slow=1)
+    film = Film([run], height=300, slow=1)
     tone = np.array(to_bytes(JOINTS[JointState.HINGE_INTRADOS]))
     # In the shade as well: the same hue, darker.
     seen = []
     for number in (0, film.count - 1):
-        picture = film.frame(number)[..., :3].astype(float)
+        # The legend below has it in every frame.
+        picture = film.frame(number)[:-20, :, :3].astype(float)
         hue = picture / np.maximum(picture.max(axis=-1, keepdims=True), 1)
         seen.append(int((np.abs(hue - tone / tone.max()).max(axis=-1) < 0.04).sum()))
     assert seen[0] == 0
@@ -123,7 +133,7 @@ def test_a_model_moves_blocks_as_the_recording_does(tmp_path: Path) -> None:
     run = tipping()
     path = tmp_path / "tower.glb"
     with path.open("wb") as file:
-        write_recording(run, file, "glb")
+        write_model(run, file, "glb")
     document, data = parts_of(path.read_bytes())
     assembly = run.problem.assembly
     channels = document["animations"][0]["channels"]
@@ -191,3 +201,99 @@ def test_the_page_is_shown_in_a_browser(windows: Any, tmp_path: Path) -> None:
         for each in windows.wrong(path.as_uri())
         if not each.startswith(("blob:", "[.WebGL"))
     ] == []
+
+
+def test_a_report_tells_what_a_structure_in_space_carries() -> None:
+    """Reactions balance weight and push, a joint carries both; how it falls is told beyond."""
+    box = blocksim.Solid(parts=(cuboid(0, 2),), name="block")
+    bed = blocksim.Solid(parts=(cuboid(-1, 0),), fixed=True, name="bed")
+    push = blocksim.Load(force=[1, 0, 0], blocks=(0,), per_weight=True)
+    assembly = blocksim.assembly_in_space([bed, box], density=1e3)
+    problem = blocksim.Problem(assembly=assembly, mu=0.6, live=(push,), load=0.25)
+    page = structure_page(blocksim.check(problem))
+    cells = re.findall(r">([^<>]+)</t[dh]>", page[page.index("<h2>Reactions [kN]") :])
+    at = cells.index("bed")
+    assert cells[at + 1 : at + 4] == ["-0.3000", "0", "1.200"]
+    at = cells.index("bed-block")
+    # Of 0.6 times the weight a quarter of it is friction.
+    assert cells[at + 1 : at + 5] == ["1.200", "0.3000", "250", "41.7\N{NO-BREAK SPACE}%"]
+    assert "how it would start to fall at load factor 0.5" in page
+    assert "<iframe" in page
+    assert "wasm-unsafe-eval" in page
+    falling = structure_page(blocksim.check(thin_dome()))
+    assert re.search(r"Joints that take part: \d+ of 48 hinge", falling)
+
+
+def test_a_recording_in_space_comes_back_as_it_was(tmp_path: Path) -> None:
+    """Poses, blocks, joints, loads and the maker; so do its model and its table."""
+    run = tipping()
+    run.save(tmp_path / "run.npz")
+    back = blocksim.load_recording(tmp_path / "run.npz")
+    assert back.state_hash == run.state_hash
+    assert back.problem.maker.origin() == run.problem.maker.origin()
+    one, two = run.problem, back.problem
+    assert to_record(one) == to_record(two)
+    assert np.array_equal(one.applied_forces(), two.applied_forces())
+    assert back.displacement.tolist() == run.displacement.tolist()
+    models: list[bytes] = []
+    for each in (run, back):
+        made = BytesIO()
+        write_model(each, made, "glb")
+        models.append(made.getvalue())
+    assert models[0] == models[1]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        pytest.param(
+            lambda made: made["blocks"][0]["hulls"][0].update(corners=[[0, 0, 0]] * 5),
+            id="flat",
+        ),
+        pytest.param(lambda made: made["blocks"][0].update(centre=[0, 0, 1e300]), id="far"),
+        pytest.param(lambda made: made["blocks"][0].update(weight=0.0), id="weightless"),
+        pytest.param(lambda made: made.update(supports=[]), id="no support"),
+        pytest.param(lambda made: made["joints"][0].update(after=7), id="no such block"),
+        pytest.param(lambda made: made["joints"][0].update(normal=[0, 0, 0]), id="no way"),
+        pytest.param(lambda made: made["joints"][0].update(points=[]), id="no point"),
+        pytest.param(lambda made: made["joints"][0].update(points=[[0, 0]]), id="in the plane"),
+    ],
+)
+def test_a_strange_recording_in_space_is_refused_in_one_line(
+    tmp_path: Path, change: Callable[[Any], None]
+) -> None:
+    """Its arrays are sound; what is said beside them is not."""
+    path = tmp_path / "run.npz"
+    tipping().save(path)
+    with np.load(path) as held:
+        kept = {name: held[name] for name in held.files}
+    header = json.loads(str(kept["header"]))
+    change(header["problem"]["assembly"])
+    np.savez_compressed(path, **{**kept, "header": np.array(json.dumps(header))})
+    with pytest.raises(blocksim.InputError) as caught:
+        blocksim.load_recording(path)
+    assert str(caught.value).startswith("recording = ")
+    assert "\n" not in str(caught.value)
+
+
+def test_commands_show_a_recording_in_space(tmp_path: Path) -> None:
+    """Written by `simulate`, shown by `render`: a table has a row for each block and frame."""
+    kept = tmp_path / "fall.npz"
+    asked = "tower --mu 0.6 --with blocks=1 --tilt 40 --method direct --seconds 0.05"
+    done = inside("simulate", *asked.split(), "--out", str(kept))
+    assert done.returncode == 0, done.stderr
+    run = blocksim.load_recording(kept)
+    for kind in ("csv", "json", "png", "glb"):
+        out = tmp_path / f"fall.{kind}"
+        done = inside("render", str(kept), "--out", str(out))
+        assert done.returncode == 0, done.stderr
+    rows = list(csv.DictReader((tmp_path / "fall.csv").read_text().splitlines()))
+    size = run.problem.assembly.size
+    places = [[float(row[key]) for key in ("x_m", "y_m", "z_m")] for row in rows]
+    assert np.allclose(places, run.poses[:, 0, :3] * size, rtol=1e-12, atol=1e-15)
+    told = json.loads((tmp_path / "fall.json").read_text())
+    assert len(told["blocks"][0]["polyhedra_m"][0]) == 8
+    assert told["time_s"] == [float(row["time_s"]) for row in rows]
+    refused = inside("simulate", *asked.split(), "--over", "spread", "--out", str(kept))
+    assert refused.returncode == 2
+    assert "supports stay in space" in refused.stderr

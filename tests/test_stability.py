@@ -1,6 +1,6 @@
 """Both sides of the boundaries within which engines answer: right inside, undecided outside.
 
-Where they lie is measured by `analysis/stability.py`.
+Where they lie was measured over arches, steps and sweeps.
 """
 
 from __future__ import annotations
@@ -11,17 +11,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.stability import moved_away, simulation_of
+from blocksim import Arch, Assembly, CircularArch, Problem, Verdict
+from blocksim.arch.limit import least_thickness
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.joints import overlap_share
-from blocksim.blocks.problem import Problem
+from blocksim.blocks.joints import overlap_and_slip
 from blocksim.engines.base import Quality
 from blocksim.simulation import motion
 from blocksim.simulation.motion import Motion, moving_run
 from blocksim.simulation.observation import Held, conclude
 from blocksim.simulation.onset import Onset, onset
 from blocksim.simulation.simulated import Simulation
-from blocksim.simulation.verdict import Verdict
 
 SIDES = [(0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)]
 
@@ -29,11 +28,28 @@ SIDES = [(0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)]
 def setup_at(ratio: float, angle: float, mu: float, count: int, engine: str) -> Simulation:
     if engine == "pybullet":
         pytest.importorskip("pybullet", exc_type=ImportError)
-    return simulation_of(engine, (angle, mu, count), ratio)
+    least = least_thickness(math.radians(angle), mu, count).eta
+    assert least is not None
+    arch = Arch(half_angle=math.radians(angle), eta=least * ratio, voussoirs=count)
+    return Simulation.of(CircularArch.of(arch, mu).problem(), engine)
+
+
+def moved_away(assembly: Assembly, distance: float) -> Assembly:
+    """The same built elsewhere, by a distance to the right [size]."""
+    by = np.array([distance * assembly.size, 0.0])
+    blocks = [
+        replace(block, vertices=block.vertices + by, centre=block.centre + by)
+        for block in assembly.blocks
+    ]
+    joints = [
+        replace(joint, inner=joint.inner + by, outer=joint.outer + by)
+        for joint in assembly.joints
+    ]
+    return replace(assembly, blocks=tuple(blocks), joints=tuple(joints))
 
 
 def held(simulation: Simulation) -> Onset:
-    return onset(simulation.world(), simulation.engine, simulation.taken, simulation.settings)
+    return onset(simulation.world(), simulation)
 
 
 def released(simulation: Simulation, until: float | None = None) -> Motion:
@@ -102,11 +118,9 @@ def test_far_from_the_origin(engine: str, far: bool, ratio: float, right: Verdic
     simulation = setup_at(ratio, 90, 0.7, 9, engine)
     farthest = simulation.settings.farthest
     assembly = moved_away(simulation.assembly, farthest * (1.01 if far else 0.99))
-    world = simulation.engine.build(
-        Problem(assembly=assembly, mu=simulation.problem.mu), simulation.settings
-    )
     problem = Problem(assembly=assembly, mu=simulation.problem.mu)
-    seen = onset(world, simulation.engine, problem, simulation.settings)
+    away = replace(simulation, problem=problem)
+    seen = onset(away.world(), away)
     assert seen.verdict is (Verdict.UNDECIDED if far else right)
     assert ("from the origin" in seen.reason) == far
 
@@ -132,7 +146,7 @@ def test_settings_beyond_those_measured_are_named(
     chosen = replace(rule, step=rule.step * step, sweeps=round(rule.sweeps * sweeps))
     changed = replace(simulation, settings=chosen)
     world = changed.world()
-    first = onset(world, changed.engine, changed.taken, chosen)
+    first = onset(world, changed)
     seen = conclude(Held(simulation=changed, world=world, onset=first), moving=moving)
     assert ("to be sure" in seen.reason) == (moving and word != "")
     assert not moving or word in seen.reason
@@ -167,6 +181,6 @@ def test_what_counts_as_noise_of_a_release(way: float, right: bool) -> None:
     simulation = replace(simulation, settings=replace(simulation.settings, repeats=0))
     world = Drifting(simulation, way)
     seen = moving_run(simulation, world, lambda _: None, until=10.0)
-    assert overlap_share(simulation.assembly, world.poses()) > motion.OVERLAP
+    assert overlap_and_slip(simulation.assembly, world.poses())[0] > motion.OVERLAP
     assert seen.verdict is (Verdict.STANDS if right else Verdict.UNDECIDED)
     assert (seen.recording.times[-1] == pytest.approx(10.0)) == right

@@ -11,15 +11,11 @@ import numpy as np
 import pytest
 from running import inside as blocksim
 
-from blocksim.arch.circular import Arch
+from blocksim import Arch, CircularArch, InputError, Problem, check, equilibrium, structure_of
 from blocksim.arch.limit.statics import least_thickness
-from blocksim.ask.check import check
 from blocksim.ask.rest import FAR, SPEED, let_go
-from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
-from blocksim.blocks.structure import structure_of, structure_record
-from blocksim.common.errors import InputError
-from blocksim.kinds.circular import CircularArch
-from blocksim.limit import equilibrium
+from blocksim.blocks.problem import STANDARD_GRAVITY
+from blocksim.blocks.structure import structure_record
 from blocksim.limit.starting import Start, may_start, rates_of
 from blocksim.view.sheet import answer_sheet
 
@@ -63,7 +59,7 @@ def wrong(problem: Problem, start: Start) -> float:
         "j,jn->n", start.forces[..., 1].sum(axis=1), rates_of(problem)[:, 2]
     )
     inertia = problem.assembly.masses.ravel() * start.accelerations.ravel()
-    worst = float(np.abs(inertia - problem.pull().ravel() - pulls).max())
+    worst = float(np.abs(inertia - problem.applied_forces().ravel() - pulls).max())
     for joint, mu in enumerate(problem.friction):
         pressure, friction = start.forces[joint].sum(axis=0)
         opening, slip = rates[joint, :2], rates[joint, 2]
@@ -94,6 +90,7 @@ def test_the_motion_is_recorded_and_drawn() -> None:
     found = check(between_walls(-0.9 * math.atan(0.6), 0.6), must_rest=True, method="limit")
     assert found.motion is not None
     gone = let_go(found.problem, found.motion.accelerations)
+    assert ", pushed along a motion" in gone.problem.title
     fallen = gone.poses[0, 0, 1] - gone.poses[:, 0, 1]
     assert (fallen <= gone.times**2 / 2 + SPEED * gone.times + 1e-9).all()
     assert not found.motion.goes_on
@@ -156,18 +153,6 @@ def test_its_motion_is_none_with_other_friction() -> None:
     assert wrong(arch(2.9, 1.05), start) > 1e-4
 
 
-def test_of_another_size_it_is_the_same() -> None:
-    powers = [
-        may_start(
-            CircularArch.of(
-                Arch(eta=1.286, radius=radius, half_angle=HALF_ANGLE, voussoirs=3), 3.0
-            ).problem()
-        ).power
-        for radius in (1.0, 250.0)
-    ]
-    assert powers[1] == pytest.approx(powers[0], rel=1e-6)
-
-
 @pytest.mark.parametrize(
     ("alpha", "mu"),
     [
@@ -207,7 +192,8 @@ def beside(problem: Problem, weight: float) -> Problem:
     "weight", [1e5, *(pytest.param(each, marks=pytest.mark.long) for each in (1e-6, 1.0, 1e9))]
 )
 def test_what_rests_beside_it_hides_no_motion(weight: float) -> None:
-    alone, together = arch(3.0, 1.2, 7), beside(arch(3.0, 1.2, 7), weight)
+    # Of five voussoirs: seven take six times as long, and are let go below.
+    alone, together = arch(3.0, 1.2, 5), beside(arch(3.0, 1.2, 5), weight)
     want, found = may_start(alone), may_start(together)
     assert found.moves
     assert found.power == pytest.approx(want.power, rel=1e-4)
@@ -281,12 +267,7 @@ def test_the_command_says_it() -> None:
 
 
 @pytest.mark.long
-def test_two_methods_find_the_same_end_of_the_band_and_pushes_agree(tmp_path: Path) -> None:
-    said = import_module("analysis.two_answers").main(
-        tmp_path, pushes=20, processes=1, quick=True
-    )
+def test_two_methods_find_the_same_end_of_the_band(tmp_path: Path) -> None:
+    said = import_module("analysis.two_answers").main(tmp_path, processes=1, quick=True)
     assert "2 arches, 1 with a band, the widest of 38.6%" in said
     assert "both ends within 0.1" in said
-    assert "begun with the motion below: 1 of 1 go on" in said
-    assert "along it above: 0 of 1 go on" in said
-    assert "at random above: 0 of 20 go on" in said

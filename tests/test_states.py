@@ -13,12 +13,10 @@ import pytest
 from running import inside
 from scipy.optimize import linprog
 
+from blocksim import CircularArch, Column, equilibrium
 from blocksim.ask.moved import spread_by, thrusts_over
 from blocksim.ask.push import borne, curve, pushed
 from blocksim.kinds import KINDS
-from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.column import Column
-from blocksim.limit import equilibrium
 
 
 def asked(*options: str, code: int = 0) -> dict[str, Any]:
@@ -66,7 +64,7 @@ def test_the_push_on_a_rocking_block_falls_as_its_angle(way: str) -> None:
         assert push == pytest.approx(math.tan(left), abs=2e-5)
 
 
-@pytest.mark.parametrize("kind", sorted(KINDS))
+@pytest.mark.parametrize("kind", sorted(n for n, kind in KINDS.items() if not kind.in_space))
 def test_every_kind_is_pushed_both_ways(kind: str) -> None:
     """What is borne is the change from standing to falling, whatever is built."""
     problem = KINDS[kind](friction=0.7).problem()
@@ -91,7 +89,7 @@ def test_an_arch_that_is_spread_has_its_least_thrust() -> None:
     rises = [low for _, low, _ in points[1:]]
     assert rises == sorted(rises)
     # The left part between haunch and crown, as it lies: its weight about the haunch.
-    joints, size = lies.assembly.joints, lies.assembly.size
+    joints = lies.assembly.joints
     hinges = [
         (joint.after, joint.inner) for joint in joints if joint.is_corner and joint.before >= 0
     ]
@@ -105,7 +103,6 @@ def test_an_arch_that_is_spread_has_its_least_thrust() -> None:
         *("check", "--span", "8", "--rise", "3", "--thickness", "0.6", "--voussoirs", "14"),
         *("--mu", "0.7", "--unit-weight", "20", "--spread", str(spread)),
     )
-    assert size > 0
     assert told["thrust_min_kN"] == pytest.approx(thrust / 1e3, rel=1e-6)
     assert told["thrust_max_kN"] == pytest.approx(told["thrust_min_kN"], rel=1e-6)
     assert "it falls" in told["reason"]
@@ -150,26 +147,6 @@ def test_curves_are_written(tmp_path: Path) -> None:
         assert len(rows) > 10
         assert float(rows[0][name]) > 0
         assert ("to the left" if over == "push" else "least thrust") in picture.read_text()
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (("portal", "--mu", "0.6", "--spread", "0.01"), "--spread = 0.01: .*move"),
-        (("column", "--mu", "0.6", "--push", "-1"), "--push = -1.0"),
-        (("column", "--mu", "0.6", "--push", "11"), "--push = 11.0"),
-    ],
-)
-def test_states_that_cannot_be_are_refused(options: tuple[str, ...], said: str) -> None:
-    done = inside("check", *options)
-    assert done.returncode == 2
-    assert done.stderr.startswith("blocksim: " + said.split(":")[0]), done.stderr
-
-
-def test_files_of_other_brackets_are_refused() -> None:
-    done = inside("bracket", "column", "--mu", "0.6", "--over", "tilt", "--out", "a.csv")
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith("blocksim: --out = 'a.csv'")
 
 
 def test_a_wall_that_leans_tips_at_its_width_over_its_height() -> None:

@@ -14,20 +14,28 @@ import pytest
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, PathPatch
+from shapely import Polygon, box
 from structure_cases import names, scenes
 
-from blocksim.arch.circular import Arch
+from blocksim import (
+    Arch,
+    CircularArch,
+    JointState,
+    Problem,
+    check,
+    collapse,
+    equilibrium,
+    structure_of,
+)
 from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.blocks.joints import JointState
-from blocksim.blocks.problem import Problem
-from blocksim.blocks.structure import structure_of
-from blocksim.kinds.circular import CircularArch
-from blocksim.limit import collapse, equilibrium
-from blocksim.view.arrows import force_words
+from blocksim.blocks.road import fill_of
+from blocksim.view import sheetlayout
+from blocksim.view.arrows import force_words, pressures_of
 from blocksim.view.drawing import clipped, loading_words, outer_sides, save_figure
-from blocksim.view.sheet import sheet_of
+from blocksim.view.sheet import answer_sheet, scale_for, sheet_of
 from blocksim.view.sheetfigure import SCREEN, sheet_figure
-from blocksim.view.style import DEAD, LIVE
+from blocksim.view.structure import fill_outlines
+from blocksim.view.style import DEAD, LIVE, use_of
 
 
 def square(x: float, y: float, wide: float = 1.0, tall: float = 1.0) -> list[list[float]]:
@@ -82,6 +90,51 @@ def corners(artist: PathPatch) -> set[tuple[float, float]]:
     return {
         (float(x), float(y)) for x, y in np.round(np.asarray(artist.get_path().vertices), 9)
     }
+
+
+@pytest.mark.parametrize("weight", ["chord", "curved"])
+def test_fill_is_drawn_as_the_area_that_weighs(weight: str) -> None:
+    """Its area times depth and unit weight is what it weighs; curves are chords."""
+    problem = CircularArch(
+        span=8.0, rise=3.0, thickness=0.45, voussoirs=31, weight=weight, fill=0.5,
+        fill_density=0.8, depth=1.5, friction=0.7, density=2e4,
+    ).problem()  # fmt: skip
+    ((outline, is_backing),) = fill_outlines(problem)
+    # What lies over the supports weighs on them.
+    left, right = (float(problem.assembly.joints[k].outer[0]) for k in (0, -1))
+    over = Polygon(outline).intersection(box(left, -1e3, right, 1e3))
+    area = over.area * 1.5 * 0.8 * 2e4
+    fill = fill_of(problem)
+    assert fill is not None
+    assert not is_backing
+    assert area == pytest.approx(fill.weight, rel=1e-9 if weight == "chord" else 2e-2)
+    drawn = problem_figure(problem)
+    assert set(of(drawn, "fill")) == {0}
+    assert not of(drawn, "dead")
+
+
+def test_pressures_along_joints_sum_to_the_forces_at_their_points() -> None:
+    """A block of stress about the resultant: as much force, and no moment about it."""
+    problem = CircularArch(
+        span=8.0, rise=3.0, thickness=0.45, voussoirs=15, depth=2.0, friction=0.7
+    ).problem()
+    sheet = answer_sheet(check(problem, method="limit")).pressures
+    carried = sheet.carried and sheet.carried.resultants
+    assert carried is not None
+    found = pressures_of(problem, carried)
+    assert len(found) == 16
+    drawn = of(sheet_figure(sheet, column=SCREEN), "pressure")
+    used = of(sheet_figure(sheet, column=SCREEN), "used")
+    heights = {}
+    for index, (part, stress) in found.items():
+        long = float(np.hypot(*(part[1] - part[0])))
+        assert stress * long * 2.0 == pytest.approx(carried.normal[index], rel=1e-9)
+        assert part.mean(axis=0) == pytest.approx(carried.point[index], abs=1e-9)
+        corner = np.asarray(drawn[index].get_xy())
+        assert corner[:2] == pytest.approx(part)
+        heights[index] = float(np.hypot(*(corner[3] - corner[0]))) / stress
+        assert used[index].get_color() == use_of(float(carried.used[index]))[1]
+    assert np.ptp(list(heights.values())) <= 1e-9 * max(heights.values())
 
 
 def test_blocks_are_where_they_are_and_supports_are_hatched() -> None:
@@ -269,8 +322,17 @@ def test_words_of_loading() -> None:
         for at, name in enumerate(names()[::6])
     ],
 )
-def test_structures_of_the_corpus_are_framed(name: str) -> None:
+def test_structures_of_the_corpus_are_framed(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Every block, force and moved block is inside the axes; a bar tells lengths."""
+    rooms: list[np.ndarray] = []
+
+    def scale(span: np.ndarray, room: np.ndarray) -> float:
+        rooms.append(room.copy())
+        return scale_for(span, room)
+
+    monkeypatch.setattr(sheetlayout, "scale_for", scale)
     problem = structure_of(scenes(name)[0])
     found = equilibrium(problem)
     figure = problem_figure(problem, forces=found.forces, mechanism=found.mechanism)
@@ -279,12 +341,15 @@ def test_structures_of_the_corpus_are_framed(name: str) -> None:
     drawn = [np.asarray(each.get_path().vertices) for each in of(figure, "block").values()]
     drawn += [np.asarray(each.get_path().vertices) for each in of(figure, "moved").values()]
     drawn += [line_of(each) for each in of(figure, "force").values()]
-    points = np.concatenate(drawn)
+    points, supports = np.concatenate(drawn), of(figure, "support").values()
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     assert left < points[:, 0].min() <= points[:, 0].max() < right
     assert bottom < points[:, 1].min() <= points[:, 1].max() < top
-    # The picture is filled as far as a usual scale allows: half of it at the next smaller one.
-    assert np.ptp(points, axis=0).max() > 0.4 * min(right - left, top - bottom)
+    # Half of the room is filled at least: at the next larger usual scale it would not fit.
+    (room,) = rooms
+    paper = 25.4 * figure.get_size_inches() / [right - left, top - bottom]
+    shown = np.concatenate([points, *(each.get_path().vertices for each in supports)])
+    assert (np.ptp(shown, axis=0) * paper / room).max() > 0.5
     (bar,) = [line for line in axes.lines if line.get_gid() == "scale"]
     length = float(np.ptp(bar.get_xdata()))
     assert f"{length:g} m" in words(figure)

@@ -6,28 +6,22 @@ import io
 import math
 import re
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
-import av
 import numpy as np
 import pytest
 from structure_cases import scenes
 
+from blocksim import JointState, Problem, Recording, structure_of
 from blocksim.arch.circular import GRAVITY
-from blocksim.ask.simulate import simulate
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.joints import JointState
-from blocksim.blocks.problem import Problem
-from blocksim.blocks.structure import structure_of
 from blocksim.engines.base import Settings
-from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import stone_tones
 from blocksim.view.film import Film
 from blocksim.view.planar import PlanarView
 from blocksim.view.stage import BESIDE, Stage
 from blocksim.view.style import JOINTS, QUIET
-from blocksim.view.video import render, to_bytes
+from blocksim.view.video import to_bytes
 
 ARCH_SAYINGS = (
     "arch",
@@ -151,16 +145,6 @@ def test_joints_are_on_parts_of_faces() -> None:
     assert shares == pytest.approx([0.5, 1.0, 1.0, 1.0])
 
 
-def test_a_block_alone_and_a_corner_on_a_wall() -> None:
-    """One block has no neighbour to measure by; a corner has no length."""
-    for name, view in (("block_slides", "2d"), ("plank_on_wall", "3d")):
-        problem = structure_of(scenes(name)[0])
-        stage = Stage(recording(problem, np.zeros((2, 1, 3))))
-        assert stage.grain == pytest.approx(problem.assembly.reach[0] / problem.assembly.size)
-        film = Film([stage.recording], view=view, height=240)
-        assert np.unique(film.frame(0).reshape(-1, 4), axis=0).shape[0] > 20
-
-
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
 def test_frames_show_blocks_in_their_colours_where_they_are(share: float) -> None:
     problem = yard()
@@ -240,7 +224,7 @@ def test_where_gravity_pulls_is_shown_on_a_tilted_table(tilt: float, way: int) -
     slope = np.polyfit(rows, columns, 1)[0]
     assert slope == pytest.approx(way * math.tan(math.radians(25)), abs=0.08)
     # The head is wider than the shaft, and below.
-    widths = [np.ptp(columns[rows == row]) for row in (rows.min() + 8, rows.max() - 9)]
+    widths = [np.ptp(columns[rows == row]) for row in (rows.min() + 8, rows.max() - 6)]
     assert widths[1] > widths[0] + 3
 
 
@@ -324,27 +308,3 @@ def test_hinges_at_either_end_are_one_thing() -> None:
 
     assert pixels(JOINTS[JointState.HINGE_INTRADOS]) > 200
     assert pixels(JOINTS[JointState.HINGE_EXTRADOS]) == 0
-
-
-def test_film_of_a_stack_that_falls_by_direct(tmp_path: Path) -> None:
-    """Three blocks by hand, each 0.45 out: the upper two go over, the lowest stays."""
-    blocks = [
-        {"id": "g", "vertices": square(0, -0.5, 1, 0.5), "fixed": True},
-        *({"id": k, "vertices": square(0.45 * k, k)} for k in range(3)),
-    ]
-    problem = structure_of({"title": "Three blocks", "friction": 0.6, "blocks": blocks})
-    run = simulate(problem, method="direct", duration=2.0)
-    film = render([run], tmp_path / "film.mp4", height=360, slow=1)
-    with av.open(str(tmp_path / "film.mp4")) as container:
-        frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
-    assert len(frames) == film.count
-    tones = np.round(255 * np.array(stone_tones(3))[:, :3])
-    stage = Stage(run)
-    for frame, time in ((frames[0], 0.0), (frames[-1], stage.end)):
-        moment = stage.at(time)
-        for block in range(3):
-            centre = moment.corners[block, 0, :, :2].mean(axis=0)
-            assert np.abs(pixel(film, frame, centre) - tones[block]).max() <= 6
-    gone = np.hypot(*(run.poses[-1] - run.poses[0])[:, :2].T)
-    assert gone[0] < 1e-3
-    assert gone[1:].min() > 0.02

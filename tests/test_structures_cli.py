@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import structure_cases
 from running import inside as blocksim
 
 from blocksim import load_recording
@@ -120,17 +119,6 @@ def test_no_answer_is_beyond_the_range_given(
     assert {end: answer[end] for end in ends} == ends
 
 
-@pytest.mark.parametrize("method", [(), ("--method", "limit")])
-@pytest.mark.parametrize("within", [("0.1", "0.2"), ("0.3", "0.7")])
-def test_a_range_is_refused_where_nothing_is_searched(
-    stack: str, method: tuple[str, ...], within: tuple[str, str]
-) -> None:
-    """The limit, 0.4, was told as if no range had been given."""
-    done = blocksim("bracket", stack, "--over", "load", "--within", *within, *method)
-    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
-    assert "left out by limit, which searches no range" in done.stderr
-
-
 def test_a_structure_is_let_go_and_read_back(stack: str, tmp_path: Path) -> None:
     out = tmp_path / "run.npz"
     done = blocksim("simulate", stack, "--tilt", "25", "--seconds", "0.3", "--out", str(out))
@@ -156,28 +144,6 @@ def test_an_arch_on_a_tilted_table() -> None:
         for method in ("limit", "direct")
     ]
     assert codes[0] == codes[1]
-
-
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (["--alpha", "90"], "--alpha"),
-        (["--reduce"], "--reduce"),
-        (["--method", "theory"], "circular arches"),
-        (["--tilt", "nan"], "--tilt"),
-        (["--set", "speed=1"], "speed"),
-    ],
-)
-def test_what_cannot_be_asked_is_one_line(
-    options: list[str], words: str, tmp_path: Path
-) -> None:
-    path = tmp_path / "wall.json"
-    path.write_text(json.dumps(structure_cases.scenes("ferris_tinloi_1")[0]))
-    done = blocksim("check", str(path), *options)
-    assert done.returncode == 2
-    assert words in done.stderr
-    assert done.stderr.count("\n") == 1
-    assert not done.stdout
 
 
 def test_load_needs_live_loads(tmp_path: Path) -> None:
@@ -211,3 +177,25 @@ def test_least_friction_of_a_wedge_beside_a_block_on_a_slope(tmp_path: Path) -> 
     answer = json.loads(blocksim("bracket", str(path), "--over", "mu", "--json").stdout)
     assert answer["limit"] == pytest.approx(wide, rel=1e-8)
     assert answer["low"] < wide < answer["high"]
+
+
+@pytest.mark.parametrize(
+    ("options", "alike"),
+    [
+        (["--alpha", "90", "--eta", "0.1"], ["half_angle_deg=90", "eta=0.1"]),
+        (
+            ["--span", "8", "--rise", "3", "--thickness", "0.4"],
+            ["span=8", "rise=3", "thickness=0.4"],
+        ),
+    ],
+)
+def test_options_of_an_arch_are_parameters_of_its_kind(
+    options: list[str], alike: list[str]
+) -> None:
+    by_option = blocksim("check", "circular-arch", "--mu", "0.7", *options, "--json")
+    by_name = [word for each in alike for word in ("--with", each)]
+    by_parameter = blocksim("check", "circular-arch", "--mu", "0.7", *by_name, "--json")
+    ours, theirs = json.loads(by_option.stdout), json.loads(by_parameter.stdout)
+    assert ours["verdict"] == theirs["verdict"]
+    assert ours["arch"] == theirs["arch"]
+    assert ours["joints"] == theirs["joints"]

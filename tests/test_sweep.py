@@ -12,15 +12,12 @@ from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecu
 from pathlib import Path
 
 import pytest
-from running import inside
 from running import inside as blocksim
 from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
 
-from blocksim import Arch, Problem, bracket, check
+from blocksim import Arch, CircularArch, InputError, MissingPart, Problem, bracket, check, sweep
 from blocksim import sweep as public_sweep
-from blocksim.common.errors import InputError, MissingPart
-from blocksim.kinds.circular import CircularArch
-from blocksim.sweeps import Case, answers, read_rows, run, sweep, write_csv, write_parquet
+from blocksim.sweeps import Case, answers, read_rows, run, write_csv, write_parquet
 from blocksim.sweeps import table as tables
 from blocksim.sweeps.answers import Answered, Asked, answer
 from blocksim.sweeps.shards import identities
@@ -53,7 +50,7 @@ def test_a_grid_takes_every_combination(tmp_path: Path) -> None:
 def test_a_random_design_is_the_same_again_and_can_grow(tmp_path: Path) -> None:
     few = list(design_of(tmp_path, SIMULATED).cases())
     assert few == list(design_of(tmp_path, SIMULATED).cases())
-    more = list(design_of(tmp_path, SIMULATED.replace("40", "5000")).cases())
+    more = list(design_of(tmp_path, SIMULATED.replace("count = 20", "count = 5000")).cases())
     assert more[: len(few)] == few
     assert len(more) == 10_000
     assert few != list(design_of(tmp_path, SIMULATED.replace("seed = 7", "seed = 8")).cases())
@@ -77,54 +74,6 @@ def test_an_identity_is_what_is_asked_and_by_what_version() -> None:
     ratio = tuple(("ratio" if name == "eta" else name, value) for name, value in case.given)
     others = [case._replace(given=tuple(other.items())), case._replace(given=ratio)]
     assert len({each.identity("1") for each in (case, *others)}) == 3
-
-
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        (("half_angle_deg = {", "alpha = {"), "alpha = "),
-        (
-            ("high = 150", "high = 180"),
-            "half_angle_deg = 180.0: must be 0.06 to below 180 deg",
-        ),
-        (("low = 60", "low = 0"), "half_angle_deg = 0.0: must be 0.06 to"),
-        (("high = 150", "high = 50"), "half_angle_deg.high = 50.0: must be above low = 60.0"),
-        ((", steps = 4", ""), "half_angle_deg.steps is missing"),
-        (("steps = 4", "steps = 1"), "half_angle_deg.steps = 1"),
-        (("low = 60,", ""), "half_angle_deg.low is missing"),
-        (("[0.5, 0.9, inf]", "[]"), "mu = []"),
-        (("[0.5, 0.9, inf]", '["rough"]'), "mu[0] = 'rough'"),
-        (("[0.5, 0.9, inf]", "nan"), "mu = nan"),
-        (("[9, 12]", "[9.5]"), "voussoirs = 9.5: must be a whole number from 3 to 10000"),
-        (("[9, 12]", "2"), "voussoirs = 2.0"),
-        (("[9, 12]", "{ low = 3, high = 1000, steps = 3 }"), "voussoirs = 501.5"),
-        (("0.1]", "2.1]"), "eta = 2.1: must be 1e-15 to 2"),
-        (("eta =", "tilt_deg = 1\nband = 1\neta ="), "band = 1.0: must be left out: it is of"),
-        (("eta =", "ratio = 1\neta ="), "ratio = 'given': must be left out where eta is given"),
-        (('"sector"', '"stone"'), "weight = 'stone': must be one of centreline, sector"),
-        (('"limit"', '"guess"'), "method = 'guess': must be one of auto"),
-        (("method =", "band = -1\nmethod ="), "band = -1.0"),
-        (("method =", "tol = 0\nmethod ="), "tol = 0.0"),
-        ((GRID, f"{DIRECT}step = 0.5"), "settings.step = 0.5: must be 1e-06 to 0.2"),
-        ((GRID, f"{DIRECT}sweeps = 5"), "settings.sweeps = 'given': must be left out: no"),
-        ((GRID, f"{DIRECT}pace = 5"), "settings.pace = 5: must be left out"),
-        ((GRID, f"{DIRECT}still = []"), "settings.still = []: must be a value, a list"),
-        ((GRID, f"{PYMUNK}sweeps = [9, 9.5]"), "settings.sweeps = 9.5: must be a whole number"),
-        (('"limit"]', '"limit"]\n[settings]\nstep = 0.1'), "settings.step = 'given'"),
-        (("steps = 4", "steps = 1000000"), "design = '48000000 cases'"),
-        (("mu =", "mu = ="), "must be valid TOML"),
-    ],
-)
-def test_wrong_designs_are_told_in_one_line(
-    tmp_path: Path, change: tuple[str, str], said: str
-) -> None:
-    assert change[0] in GRID
-    with pytest.raises(InputError) as error:
-        design_of(tmp_path, GRID.replace(*change, 1))
-    message = str(error.value)
-    assert said in message
-    assert message.startswith(str(tmp_path / "design.toml"))
-    assert "\n" not in message
 
 
 @pytest.mark.usefixtures("in_this_process")
@@ -466,6 +415,32 @@ def test_tables_of_kinds_have_a_column_and_a_type_for_each_parameter(tmp_path: P
                 assert held[same] == row[same]
 
 
+@pytest.mark.usefixtures("in_this_process")
+def test_a_kind_in_space_is_one_like_any_other(tmp_path: Path) -> None:
+    """Two boxes stand up to half a length of offset, by statics of the upper one alone."""
+    text = 'kind = "tower"\nblocks = 2\nturn_deg = 0\nmu = 0.6\nmethod = ["limit", "direct"]\n'
+    towers = design_of(tmp_path, f"{text}offset = [0.49, 0.51]")
+    assert sweep(towers, tmp_path / "rows").tally.rows == 4
+    assert sweep(towers, tmp_path / "rows").tally.rows == 0
+    found = {(row["parameters"]["offset"], row["method"]): row["verdict"]  # type: ignore[index]
+             for row in read_rows(tmp_path / "rows")}  # fmt: skip
+    assert found == {
+        (offset, method): "stands" if offset < 0.5 else "collapses"
+        for offset in (0.49, 0.51)
+        for method in ("limit", "direct")
+    }
+    write_csv(tmp_path / "rows", tmp_path / "rows.csv")
+    assert ",offset_m,turn_deg," in (tmp_path / "rows.csv").read_text()
+    for wrong, said in (
+        ('over = "spread"', "over"),
+        ('method = "pymunk"', "method"),
+        ('shake = "constant"\namplitude_g = 0.1\nduration_s = 1', "shake"),
+    ):
+        kept = text.replace('method = ["limit", "direct"]\n', "")
+        with pytest.raises(InputError, match=said):
+            design_of(tmp_path, kept + wrong)
+
+
 def test_a_date_is_no_load(tmp_path: Path) -> None:
     with ThreadPoolExecutor(1) as executor:
         text = 'kind = "column"\nmu = 0.7\nmethod = "limit"\ndead = 2026-11-23'
@@ -484,24 +459,6 @@ def test_a_table_of_one_question_about_a_kind(tmp_path: Path) -> None:
     [held] = parquet.read_table(tmp_path / "rows.parquet").to_pylist()
     [row] = read_rows(tmp_path)
     assert held == {key: value for key, value in row.items() if key != "parameters"}
-
-
-@pytest.mark.usefixtures("in_this_process")
-def test_csv_of_arches_is_their_rows(tmp_path: Path) -> None:
-    done = inside(*written(tmp_path, GRID), "--workers", "1", "--csv")
-    assert done.returncode == 0, done.stderr
-    rows = list(read_rows(tmp_path / "out"))
-    with (tmp_path / "out/rows.csv").open(newline="") as file:
-        held = list(csv.DictReader(file))
-    assert len(held) == len(rows) == 192
-    for row, said in zip(rows, held, strict=True):
-        for name, value in row.items():
-            if name in {"settings", "parameters"}:
-                continue
-            if isinstance(value, float) and not isinstance(value, bool):
-                assert float(said[name]) == value
-            else:
-                assert said[name] == ("" if value is None else str(value))
 
 
 @pytest.mark.usefixtures("in_this_process")

@@ -14,8 +14,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from blocksim import InputError, Mode
 from blocksim.arch import limit, theory
-from blocksim.arch.modes import Mode
 from blocksim.arch.theory.critical import inner_sliding
 from blocksim.arch.theory.equations import inner_friction, shoulder_friction
 from blocksim.arch.theory.regions import (
@@ -27,7 +27,6 @@ from blocksim.arch.theory.regions import (
     first_sliding,
 )
 from blocksim.arch.theory.sliding import thrust_intervals
-from blocksim.common.errors import InputError
 
 angles = st.floats(math.radians(2), math.radians(178))
 frictions = st.floats(0.02, 50.0)
@@ -118,24 +117,6 @@ def test_lines_end_at_the_landmarks(weight: str) -> None:
     for name, line in (("S", equal_angles), ("J", crown_hinge)):
         near = line(np.array([points[name].mu * (1 + 1e-9)]), weight)
         assert near.eta == pytest.approx([points[name].eta], rel=1e-6)
-
-
-@pytest.mark.parametrize("weight", ["centreline", "sector"])
-def test_both_sides_of_every_line(weight: str) -> None:
-    """One part in 10^7 to each side of a line, the mode is that of the side."""
-    step = 1e-7
-    for degrees in (60, 90, 120, 135):
-        alpha = math.radians(degrees)
-        mu = float(first_sliding(np.array([alpha]), weight).mu[0])
-        right = theory.least_thickness(alpha, mu * (1 + step), weight)
-        left = theory.least_thickness(alpha, mu * (1 - step), weight)
-        assert (right.mode, left.mode) == (Mode.RRR, Mode.SRR)
-    for mu in (0.2, 0.5, 1.0, 1.3, 1.5):
-        alpha = divide_half_angle(mu)
-        assert theory.least_thickness(alpha * (1 + step), mu, weight).mode is Mode.SS
-        inside = theory.least_thickness(alpha * (1 - step), mu, weight)
-        assert inside.mode in {Mode.SRR, Mode.RRS}
-        assert inside.eta == pytest.approx(divide(np.array([mu]), weight).eta[0], rel=1e-4)
 
 
 def distance_to_a_tie(alpha: float, mu: float, weight: str) -> bool:

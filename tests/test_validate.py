@@ -10,11 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from blocksim.arch.modes import Mode
-from blocksim.common.errors import InputError
+from blocksim import InputError, Mode, Verdict
 from blocksim.kinds.scenarios import load_scenario
 from blocksim.report.tables import write_results
-from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import disagreements
 from blocksim.studies.validate import scenarios, validate, validate_one
 from tests.report_rows import ROW

@@ -6,7 +6,6 @@ import io
 import json
 import math
 import re
-import xml.etree.ElementTree as ET
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -22,22 +21,19 @@ from PIL import Image
 from running import inside
 from scipy.spatial.transform import Rotation
 
-from blocksim.arch.circular import GRAVITY, Arch
+from blocksim import Arch, CircularArch, InputError, JointState, Recording, load_recording
+from blocksim.arch.circular import GRAVITY
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.joints import JointState, classify, joint_motion
-from blocksim.common.errors import InputError
+from blocksim.blocks.joints import classify
 from blocksim.engines.base import Settings
 from blocksim.engines.ground import DEPTH
-from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.recorded import load_recording
-from blocksim.simulation.recording import Recording
-from blocksim.view.canvas import Canvas, Panel, Shape, colour
+from blocksim.view.camera import painting_order
+from blocksim.view.canvas import Canvas, Panel, Shape
 from blocksim.view.film import Film
-from blocksim.view.order import painting_order
 from blocksim.view.planar import PlanarView
-from blocksim.view.spatial import SpatialView
-from blocksim.view.stage import SEEN, SUNK, Stage
+from blocksim.view.stage import SUNK, Stage
 from blocksim.view.style import JOINTS, THRUST
+from blocksim.view.timeline import SEEN
 from blocksim.view.video import render
 
 ARCH = Arch(half_angle=math.pi / 2, eta=0.3, voussoirs=6, radius=2.0, depth=1.0)
@@ -169,13 +165,6 @@ def test_films_beside_each_other_have_one_scale(view: Literal["2d", "3d"]) -> No
     assert (np.abs(one - alone).max(axis=2) > 60).mean() > 0.01
 
 
-def test_a_block_that_lies_far_aside_is_in_the_picture() -> None:
-    """A block 1.5 r beyond the springing: at the margin there is ground and nothing else."""
-    film = Film([slid(1.5)])
-    last = film.frame(film.count - 1)[100:600, -12:].astype(int)
-    assert np.abs(last[:, :1] - last).max() < 20
-
-
 def test_a_film_ends_when_a_block_goes_into_a_footing() -> None:
     times = np.linspace(0, 1, 101)
     moved = np.zeros((101, ARCH.voussoirs, 3))
@@ -198,19 +187,6 @@ def test_joint_arrays_are_the_joints() -> None:
         assert arrays.length[index] == joint.length / 2.0
 
 
-@pytest.mark.parametrize("angle", [0.01, 0.3, 0.8])
-def test_a_hinge_is_a_hinge_however_far_it_has_turned(angle: float) -> None:
-    """The right springing turns about its extrados, the crown about its own."""
-    joint = ARCH.assembly().joints[-1]
-    moved = turned_about(joint.outer / 2.0, -angle, [5])
-    motion = joint_motion(ARCH.assembly(), rest() + moved)
-    assert motion.slip[-1] == pytest.approx(0, abs=1e-12)
-    # The inner end parts by the chord.
-    assert motion.gap[-1].tolist() == pytest.approx([0.6 * math.sin(angle / 2), 0], abs=1e-12)
-    states = classify(ARCH.assembly(), rest() + moved, least=1e-3)
-    assert states[-1].state is JointState.HINGE_EXTRADOS
-
-
 def test_least_motion_is_absolute_where_given() -> None:
     moved = np.zeros((ARCH.voussoirs, 3))
     moved[3:, 0] = 2e-3
@@ -221,20 +197,6 @@ def test_least_motion_is_absolute_where_given() -> None:
     slid[3:, 1] = -2e-3
     assert classify(ARCH.assembly(), rest() + slid, least=1e-3)[3].state is JointState.SLIDES
     assert classify(ARCH.assembly(), rest() + slid, least=3e-3)[3].state is JointState.CLOSED
-
-
-def test_a_joint_that_turns_is_seen_in_its_colour() -> None:
-    crown = ARCH.assembly().joints[3].outer / 2.0
-    moved = turned_about(crown, 0.05, [3, 4, 5])
-    film = Film([recording(np.array([0 * moved, moved]), np.array([0.0, 1.0]))])
-    tone = np.round(255 * np.array(colour(JOINTS[JointState.HINGE_EXTRADOS])[:3]))
-
-    def pixels(frame: int) -> int:
-        inside = film.frame(frame)[80 : film.height - 50, :, :3]
-        return int((np.abs(inside - tone).max(axis=-1) < 2).sum())
-
-    assert pixels(0) == 0
-    assert pixels(film.count - 1) > 100
 
 
 def boxes(centres: Array, half: Array) -> tuple[Array, Array, Array]:
@@ -284,16 +246,6 @@ def test_bodies_that_hide_each_other_in_a_ring_are_all_painted() -> None:
     everywhere = np.tile([[-np.inf, -np.inf], [np.inf, np.inf]], (3, 1, 1))
     order = painting_order(corners, normals, shifted, np.array([0.0, 0.0, 9.0]), everywhere)
     assert sorted(order) == [0, 1, 2]
-
-
-def test_near_blocks_hide_far_ones() -> None:
-    """Seen from the left, in space, the left springing's footing hides what is behind it."""
-    stage = Stage(falling())
-    view = SpatialView(stage, Panel(0, 0, 640, 360), stage.swept)
-    canvas = Canvas(640, 360)
-    canvas.keep([(Panel(0, 0, 640, 360), view.still)])
-    canvas.draw([(Panel(0, 0, 640, 360), view.shapes(stage.at(0.0)))])
-    assert len(np.unique(canvas.pixels().reshape(-1, 4), axis=0)) > 50
 
 
 def test_polygons_are_smooth_and_where_they_should_be() -> None:
@@ -385,16 +337,6 @@ def test_gif_can_be_read_back(tmp_path: Path) -> None:
     assert np.abs(last - film.frame(film.count - 1)[..., :3]).mean() < 4
 
 
-def test_svg_is_reproducible_and_well_formed() -> None:
-    files = []
-    for _ in range(2):
-        file = io.BytesIO()
-        Film([falling()], height=240).still(file, "svg", at=0.3)
-        files.append(file.getvalue())
-    assert files[0] == files[1]
-    assert ET.fromstring(files[0]).tag.endswith("svg")  # noqa: S314 - our own file
-
-
 def test_an_interrupted_film_leaves_nothing(tmp_path: Path) -> None:
     out = tmp_path / "film.mp4"
     out.write_bytes(b"kept")
@@ -463,7 +405,7 @@ def test_command_films_a_scenario(tmp_path: Path) -> None:
 
 def test_a_film_says_that_blocks_still_move_as_it_ends(tmp_path: Path) -> None:
     """A slab slides down a slope: g (sin phi - mu cos phi) t after a time t."""
-    floor = {"id": 0, "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]], "fixed": True}
+    floor = {"id": 0, "vertices": [[-4, -1], [4, -1], [4, 0], [-4, 0]], "fixed": True}
     slab = {"id": 1, "vertices": [[0, 0], [1, 0], [1, 0.2], [0, 0.2]]}
     problem = {"friction": 0.2, "blocks": [floor, slab]}
     (tmp_path / "slab.json").write_text(json.dumps(problem))

@@ -1,4 +1,4 @@
-"""The speed-accuracy chart: its fronts, its gain, and errors and work that are true."""
+"""The speed-accuracy chart: its fronts, and errors and work that are true."""
 
 from __future__ import annotations
 
@@ -11,20 +11,17 @@ from pathlib import Path
 import pytest
 from matplotlib.figure import Figure
 
-from blocksim import Arch
+from blocksim import Arch, CircularArch, InputError, Verdict
 from blocksim.arch import limit, theory
 from blocksim.ask.methods import METHODS
-from blocksim.cli.tables import chart_table
-from blocksim.common.errors import InputError
+from blocksim.cli.studies import chart_table
 from blocksim.engines import ENGINES
-from blocksim.kinds.circular import CircularArch
 from blocksim.report import chart
 from blocksim.report.chart import read_points, write_chart, write_points
 from blocksim.simulation.motion import QUIET
 from blocksim.simulation.simulated import Simulation
-from blocksim.simulation.verdict import Verdict
 from blocksim.studies import refinement
-from blocksim.studies.chart import ChartArch, Point, front, gain, measure, on_front
+from blocksim.studies.chart import ChartArch, Point, front, measure, on_front
 from blocksim.studies.refinement import REFINEMENTS, let_go, look
 
 SMALL = ChartArch(name="small: 90 deg", half_angle=math.pi / 2, mu=0.7, voussoirs=9)
@@ -85,11 +82,6 @@ def test_what_is_held_against_theory_has_a_front_of_its_own() -> None:
     assert on_front([*POINTS, counted]) == {*front(POINTS), counted}
 
 
-def test_gain_is_taken_at_equal_time() -> None:
-    """The median of the repeats counts: 5 s buy direct the error it has after 4 s."""
-    assert gain(POINTS, "direct", "pymunk") == pytest.approx(200)
-
-
 def fewer(monkeypatch: pytest.MonkeyPatch, knob: str, **values: tuple[float, ...]) -> None:
     """Chart these settings only."""
     chosen = {name: replace(ENGINES[name], chart={knob: each}) for name, each in values.items()}
@@ -140,7 +132,8 @@ def test_an_onset_test_cut_short_is_open_rather_than_wrong(
             assert seen.verdict is truth
 
 
-@pytest.mark.parametrize("case", [pytest.param(SMALL, marks=pytest.mark.long), SLIDING])
+@pytest.mark.long
+@pytest.mark.parametrize("case", [SMALL, SLIDING])
 def test_brackets_of_an_onset_test_cut_short_are_wider_not_wrong(
     case: ChartArch, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -8,13 +8,10 @@ import numpy as np
 
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit.statics import (
-    Bound,
-    joints_of,
+    bounds_of,
     least_friction,
     least_thickness,
     slack,
-    spread_of,
-    thrust_bounds,
 )
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
@@ -27,30 +24,23 @@ def carried_by_arch(arch: Arch, problem: Problem, joint: int | None = None) -> C
 
     Parameters
     ----------
-    arch : Arch
     problem : Problem
         Of this arch, under its own weight.
     joint : int, optional
         Where thrust is told; by default the crown, or the joint to its left.
-
-    Returns
-    -------
-    Carried
     """
     mu = problem.mu
     least = least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight).eta
     needed = least_friction(arch)
     used = 1 - slack(arch, mu)
-    # Of h, in mean weights.
-    unit = arch.specific_weight * arch.thickness * arch.depth * arch.radius
-    unit /= problem.unit_force
-    lower, upper = _bounds(arch, mu, 1.0)
+    unit = _unit(arch, problem)
+    lower, upper = bounds_of(arch, mu)
     least_thrust = greatest = None
     if lower.short >= upper.short:
         least_thrust, greatest = (_thrust(arch, end.thrust, unit) for end in (lower, upper))
     safest = None
     if math.isfinite(used):
-        most = _bounds(arch, mu, used)
+        most = bounds_of(arch, mu, used)
         safest = unit * joint_forces(arch, (most[0].thrust + most[1].thrust) / 2, used)
     return Carried(
         problem=problem,
@@ -63,6 +53,26 @@ def carried_by_arch(arch: Arch, problem: Problem, joint: int | None = None) -> C
         greatest=greatest,
         forces=safest,
     )
+
+
+def standing_forces(arch: Arch, problem: Problem) -> Array | None:
+    """Return forces well within an arch, as of `Equilibrium`; None where it falls.
+
+    Their thrust is midway between the least and the greatest, which takes less time than the
+    safest state.
+    """
+    lower, upper = bounds_of(arch, problem.mu)
+    if lower.short < upper.short:
+        return None
+    low, high = lower.thrust, upper.thrust
+    middle = low + 1.0 if math.isinf(high) else (low + high) / 2
+    return joint_forces(arch, middle) * _unit(arch, problem)
+
+
+def _unit(arch: Arch, problem: Problem) -> float:
+    """Return the unit of thrusts h in mean weights."""
+    unit = arch.specific_weight * arch.thickness * arch.depth * arch.radius
+    return unit / problem.unit_force
 
 
 def _thrust(arch: Arch, thrust: float, unit: float) -> Thrust:
@@ -93,8 +103,3 @@ def joint_forces(arch: Arch, thrust: float, share: float = 1.0) -> Array:
     outward = (crown - normal + weight) / (normal * arch.eta)
     ends = np.column_stack([0.5 - outward, 0.5 + outward])
     return ends[:, :, None] * np.column_stack([normal, shear])[:, None, :]
-
-
-def _bounds(arch: Arch, mu: float, share: float) -> tuple[Bound, Bound]:
-    spread = spread_of(arch.eta, arch.weight)
-    return thrust_bounds(joints_of(arch), share * arch.eta, share * mu, spread)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY as GRAVITY
@@ -24,6 +25,14 @@ from blocksim.common.shown import Shown
 Weight = Literal["centreline", "sector"]
 WEIGHTS: tuple[str, ...] = get_args(Weight)
 
+ETA_MAX = 2.0
+"""Largest thickness ratio: the intrados has shrunk to the centre."""
+LIMITS: dict[str, tuple[float, str]] = {
+    "half_angle": (math.nextafter(math.pi, 0), "above 0 and below pi"),
+    "eta": (ETA_MAX, "above 0 and at most 2"),
+    "mu": (math.inf, "above 0 (inf for unbounded friction)"),
+}
+"""Greatest values that theory and statics take, in words."""
 SMALL = 0.1
 """Angle below which a series is better than a difference [rad]."""
 
@@ -69,7 +78,7 @@ class Arch(Shown):
         HALF_ANGLE.require("half_angle", self.half_angle)
         ETA.require("eta", self.eta)
         VOUSSOIRS.require("voussoirs", self.voussoirs)
-        require(self.weight in WEIGHTS, "weight", self.weight, f"one of {', '.join(WEIGHTS)}")
+        require_weight(self.weight)
         LENGTH.require("radius", self.radius)
         LENGTH.require("depth", self.depth)
         PER_VOLUME.require("specific_weight", self.specific_weight)
@@ -150,6 +159,29 @@ class Arch(Shown):
         # They are alike: what is wrong with the first is so with all, and told at once.
         _ = blocks[0]
         return Assembly(blocks=blocks, joints=joints, size=self.radius)
+
+
+def require_weight(weight: object) -> None:
+    """Raise `InputError` unless it is one of `WEIGHTS`."""
+    require(weight in WEIGHTS, "weight", weight, f"one of {', '.join(WEIGHTS)}")
+
+
+def checked_arrays(weight: Weight, **given: ArrayLike) -> list[Array]:
+    """Return arrays of one shape, of which each number is above 0 and within `LIMITS`.
+
+    Raises
+    ------
+    InputError
+        If one is not, or the weight is none.
+    """
+    require_weight(weight)
+    arrays = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in given.values()))
+    for name, values in zip(given, arrays, strict=True):
+        most, allowed = LIMITS[name]
+        wrong = ~((values > 0) & (values <= most))
+        if wrong.any():
+            require(False, name, float(values[wrong].flat[0]), allowed)
+    return list(arrays)
 
 
 def centroid_factor(eta: float, weight: Weight) -> float:

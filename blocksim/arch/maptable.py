@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
-from blocksim.arch.circular import WEIGHTS, Weight
+from blocksim.arch.circular import Weight, require_weight
 from blocksim.arch.limit.collapse import collapse_of_mode
 from blocksim.arch.modes import Mode
-from blocksim.arch.theory import Critical, landmarks, least_thickness, regions
+from blocksim.arch.theory import Critical, Landmark, landmarks, least_thickness, regions
 from blocksim.arch.theory.arrays import ORDER
 from blocksim.arch.theory.critical import inner_sliding
 from blocksim.arch.theory.map import at_points, special_angles
 from blocksim.blocks.assembly import Array
-from blocksim.common.checks import require
 
 NAMES = {"T": "Triple point", "S": "Shift point", "J": "Junction point", "B": "Border point"}
 SPECIAL = {
@@ -45,68 +43,23 @@ STEEPEST = 89.0
 """Friction angle up to which lines are listed [deg]."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class TablePoint:
-    """A point of the map.
-
-    Parameters
-    ----------
-    name : str
-        Letter of Table 1, name of a special angle, or of a line.
-    half_angle, mu, eta : float
-        alpha [rad]; friction coefficient, inf allowed; thickness-to-radius ratio.
-    thrust, beta_r : float
-        h; angle of the inner hinge [rad].
-    beta_s : float or None
-        Angle of the inner sliding joint [rad]; None where no mode has it.
-    modes : tuple of Mode
-        All that coincide there.
-    """
-
-    name: str
-    half_angle: float
-    mu: float
-    eta: float
-    thrust: float
-    beta_r: float
-    beta_s: float | None
-    modes: tuple[Mode, ...]
-
-
-def landmark_points(weight: Weight = "centreline") -> tuple[TablePoint, ...]:
+def landmark_points(weight: Weight = "centreline") -> tuple[Landmark, ...]:
     """Return T, S, J and B, as in Table 1.
-
-    Parameters
-    ----------
-    weight : {"centreline", "sector"}
 
     Raises
     ------
     InputError
         If the weight is none of these.
     """
-    require(weight in WEIGHTS, "weight", weight, f"one of {', '.join(WEIGHTS)}")
+    require_weight(weight)
     return tuple(
-        TablePoint(
-            name=name,
-            half_angle=each.half_angle,
-            mu=each.mu,
-            eta=each.eta,
-            thrust=each.thrust,
-            beta_r=each.beta_r,
-            beta_s=each.beta_s,
-            modes=least_thickness(each.half_angle, each.mu, weight).modes,
-        )
-        for name, each in landmarks(weight).items()
+        replace(each, modes=least_thickness(each.half_angle, each.mu, weight).modes)
+        for each in landmarks(weight).values()
     )
 
 
-def special_points(weight: Weight = "centreline") -> tuple[TablePoint, ...]:
+def special_points(weight: Weight = "centreline") -> tuple[Landmark, ...]:
     """Return alpha_s-beta, alpha_l and alpha_L, all at unbounded friction.
-
-    Parameters
-    ----------
-    weight : {"centreline", "sector"}
 
     Raises
     ------
@@ -121,7 +74,7 @@ def special_points(weight: Weight = "centreline") -> tuple[TablePoint, ...]:
     )
 
 
-def rates_of(point: TablePoint, mode: Mode, weight: Weight) -> dict[str, float]:
+def rates_of(point: Landmark, mode: Mode, weight: Weight) -> dict[str, float]:
     """Rates of one mode at a point, by eqs (15) and (16), with sliding that dilates.
 
     Returns
@@ -152,19 +105,14 @@ def rates_of(point: TablePoint, mode: Mode, weight: Weight) -> dict[str, float]:
 
 
 @cache
-def line_points(name: str, weight: Weight = "centreline") -> tuple[TablePoint, ...]:
+def line_points(name: str, weight: Weight = "centreline") -> tuple[Landmark, ...]:
     """Return points along one of the lines between regions.
 
     Parameters
     ----------
     name : str
         Of `LINES`.
-    weight : {"centreline", "sector"}
     """
-    return tuple(_line(name, weight))
-
-
-def _line(name: str, weight: Weight) -> Iterator[TablePoint]:
     marks = landmarks(weight)
     if name == "first sliding":
         end = special_angles(weight).zero_thrust
@@ -180,7 +128,7 @@ def _line(name: str, weight: Weight) -> Iterator[TablePoint]:
         }[name]
         steepest = math.tan(math.radians(STEEPEST))
         curve = line(_frictions(marks[start].mu, steepest), weight)
-    found = at_points(curve.eta, curve.mu, weight)
+    found, points = at_points(curve.eta, curve.mu, weight), list[Landmark]()
     for eta, mu, angle, seen in zip(
         curve.eta.tolist(), curve.mu.tolist(), found.half_angle.tolist(), found.regions,
         strict=True,
@@ -188,16 +136,19 @@ def _line(name: str, weight: Weight) -> Iterator[TablePoint]:
         exact = least_thickness(angle, mu, weight)
         # The modes on both sides coincide on it, whatever round-off says.
         modes = tuple(mode for mode in ORDER if mode in {*seen, *LINES[name]})
-        yield TablePoint(
-            name=name,
-            half_angle=angle,
-            mu=mu,
-            eta=eta,
-            thrust=exact.thrust or 0.0,
-            beta_r=0.0 if name == "crown hinge" else exact.beta_r or 0.0,
-            beta_s=inner_sliding(mu)[1] if INNER & {*modes} else None,
-            modes=modes,
+        points.append(
+            Landmark(
+                name=name,
+                half_angle=angle,
+                mu=mu,
+                eta=eta,
+                thrust=exact.thrust or 0.0,
+                beta_r=0.0 if name == "crown hinge" else exact.beta_r or 0.0,
+                beta_s=inner_sliding(mu)[1] if INNER & {*modes} else None,
+                modes=modes,
+            )
         )
+    return tuple(points)
 
 
 def _frictions(low: float, high: float) -> Array:
@@ -207,11 +158,11 @@ def _frictions(low: float, high: float) -> Array:
     return mu
 
 
-def _point(name: str, half_angle: float, mu: float, exact: Critical) -> TablePoint:
+def _point(name: str, half_angle: float, mu: float, exact: Critical) -> Landmark:
     if exact.eta is None:
         message = f"no thickness stands at a half-angle of {half_angle}"
         raise ValueError(message)
-    return TablePoint(
+    return Landmark(
         name=name,
         half_angle=half_angle,
         mu=mu,

@@ -1,10 +1,13 @@
-"""The seven collapse modes and how a set of active joints gets its name."""
+"""The seven collapse modes, and how active or observed joints get their name."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from enum import StrEnum
 from typing import NamedTuple
+
+from blocksim.arch.circular import Arch, crown_width
+from blocksim.blocks.joints import JointState, ObservedJoint
 
 
 class Mode(StrEnum):
@@ -84,3 +87,41 @@ def name_mode(active: Iterable[ActiveJoint], crown: float) -> Mode | None:
     ordered = sorted(joints, key=lambda joint: (-joint.angle, joint.slides))
     letters = "".join("s" if joint.slides else "r" for joint in ordered)
     return Mode(letters) if letters in set(Mode) else None
+
+
+def observed_mode(joints: tuple[ObservedJoint, ...], arch: Arch) -> Mode | None:
+    """Name the mode of the observed joints of an arch, both halves folded onto one.
+
+    A hinge that falls between two joints shows as both of them: neighbours that do the
+    same count as one, at the place of the outermost.
+
+    Returns
+    -------
+    Mode or None
+        None where they form none of the seven modes.
+    """
+    spacing = 2 * arch.half_angle / arch.voussoirs
+    active: list[ActiveJoint] = []
+    for observed in sorted(joints, key=lambda joint: -abs(joint.angle)):
+        for kind in _KINDS[observed.state]:
+            joint = ActiveJoint(abs(observed.angle), *kind)
+            if not any(_neighbours(joint, other, spacing) for other in active):
+                active.append(joint)
+    return name_mode(active, crown_width(arch.half_angle, arch.voussoirs))
+
+
+_TURNS_OUTSIDE, _TURNS_INSIDE, _SLIDES = (False, False), (False, True), (True, False)
+_KINDS: dict[JointState, tuple[tuple[bool, bool], ...]] = {
+    JointState.CLOSED: (),
+    JointState.HINGE_INTRADOS: (_TURNS_INSIDE,),
+    JointState.HINGE_EXTRADOS: (_TURNS_OUTSIDE,),
+    JointState.SLIDES: (_SLIDES,),
+    JointState.HINGE_AND_SLIDES: (_TURNS_INSIDE, _SLIDES),
+    JointState.OPEN: (_TURNS_OUTSIDE, _TURNS_INSIDE),
+}
+"""(slides, intrados) of what a joint in each state does."""
+
+
+def _neighbours(joint: ActiveJoint, other: ActiveJoint, spacing: float) -> bool:
+    same = joint.slides == other.slides and joint.intrados == other.intrados
+    return same and abs(joint.angle - other.angle) < 1.5 * spacing

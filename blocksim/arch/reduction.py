@@ -25,7 +25,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,7 @@ from blocksim.simulation.verdict import Verdict
 if TYPE_CHECKING:
     from blocksim.blocks.problem import Problem
     from blocksim.simulation.onset import Onset
+    from blocksim.simulation.simulated import Simulation
 
 UNTURNED = 1e18
 """Factor on the inertia of half a keystone."""
@@ -86,14 +87,8 @@ class Reduction:
         """Return forces as they are: those of the blocks simulated."""
         return forces
 
-    def mended(
-        self,
-        first: Onset,
-        resultants: Array,
-        problem: Problem,
-        allowed: float,
-        *,
-        takes_forces: bool,  # noqa: ARG002
+    def revised(
+        self, first: Onset, resultants: Array, simulation: Simulation[Any]
     ) -> Reduction | None:
         """Return this where it stands for all voussoirs, else what does; None: all of them."""
         # Large blocks move where they may rest sooner than those they are made of.
@@ -101,7 +96,8 @@ class Reduction:
             return None
         if first.verdict is Verdict.UNDECIDED:
             return self
-        moving = self.overstrained(resultants, problem.mu, allowed)
+        allowed = simulation.settings.still
+        moving = self.overstrained(resultants, simulation.taken.mu, allowed)
         if self.parts(resultants):
             return None
         return self.split(moving) if moving else self
@@ -238,7 +234,6 @@ class Reduction:
         ----------
         resultants : (n + 1, 3) float
             Of all joints, as `resultants` returns them.
-        mu : float
         allowed : float
             Force beyond the strength of a joint that counts as none [mean weights].
         """

@@ -5,16 +5,16 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Generic, Unpack, overload
+from typing import TYPE_CHECKING, Any, Generic, Unpack, cast
 
 from blocksim.ask.ends import Change, Stands, Within
 from blocksim.ask.families import Family, families_of, family_of
 from blocksim.ask.found import Found, by_family, by_threshold
 from blocksim.ask.methods import chosen_words
-from blocksim.ask.options import Asked, AskedInSpace, Of, Options, Taken, problem_of, taken
+from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
 from blocksim.ask.searches import proofs_beside
+from blocksim.blocks.assembly import Blocks
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.shown import Shown
@@ -24,7 +24,7 @@ from blocksim.simulation.verdict import Evidence, aside, reason_of
 
 if TYPE_CHECKING:
     from blocksim.arch.answers import ArchBracket
-    from blocksim.ask.spread import Happening
+    from blocksim.ask.spread import Event
     from blocksim.limit.proof import Proof
 
 USUAL = "thickness"
@@ -32,7 +32,7 @@ USUAL = "thickness"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bracket(Shown, Generic[Of]):
+class Bracket(Shown, Generic[Blocks]):
     """Where a family of problems changes from standing to falling, between two values tried.
 
     Parameters
@@ -52,7 +52,7 @@ class Bracket(Shown, Generic[Of]):
         Values tried, and those without an answer.
     evidence : tuple of Evidence
         What was seen, by which test.
-    problem : Problem or SpatialProblem
+    problem : Problem
         One of the family: what was asked about.
     tol : float
         Relative width asked for.
@@ -60,7 +60,7 @@ class Bracket(Shown, Generic[Of]):
         The most blocks simulated, and the number of joints that a reduction had merged and had
         to split again. None for static methods.
     wall_s : float
-    events : tuple of Happening or None
+    events : tuple of Event or None
         Over the motion of supports, what happens on the way, by limit analysis.
     intervals : tuple of Stands or None
         All intervals of the range in which it stands, in order, each end tried; None where
@@ -82,12 +82,12 @@ class Bracket(Shown, Generic[Of]):
     runs: int
     undecided: int
     evidence: tuple[Evidence, ...]
-    problem: Of
+    problem: Problem[Blocks]
     tol: float
     blocks: int | None = None
     splits: int | None = None
     wall_s: float
-    events: tuple[Happening, ...] | None = None
+    events: tuple[Event, ...] | None = None
     intervals: tuple[Stands, ...] | None = None
     arch: ArchBracket | None = None
     changes: tuple[Change, ...] = ()
@@ -122,37 +122,13 @@ class Bracket(Shown, Generic[Of]):
         )
 
 
-@overload
 def bracket(
-    asked: Asked | Family[Problem],
+    asked: Asked[Blocks] | Family[Blocks],
     *,
     over: str | None = None,
     within: Within | None = None,
     **options: Unpack[Options],
-) -> Bracket: ...
-@overload
-def bracket(
-    asked: AskedInSpace,
-    *,
-    over: str | None = None,
-    within: Within | None = None,
-    **options: Unpack[Options],
-) -> Bracket[SpatialProblem]: ...
-@overload
-def bracket(
-    asked: Asked | AskedInSpace | Family[Any],
-    *,
-    over: str | None = None,
-    within: Within | None = None,
-    **options: Unpack[Options],
-) -> Bracket[Any]: ...
-def bracket(
-    asked: Asked | AskedInSpace | Family[Any],
-    *,
-    over: str | None = None,
-    within: Within | None = None,
-    **options: Unpack[Options],
-) -> Bracket[Any]:
+) -> Bracket[Blocks]:
     """Find the value of a parameter at which blocks change from standing to falling.
 
     Engines search with the onset test and let the blocks go at both ends. Where limit analysis
@@ -160,7 +136,7 @@ def bracket(
 
     Parameters
     ----------
-    asked : Problem, SpatialProblem, a maker of one, or Family
+    asked : Problem, a maker of one, or Family
     over : str, optional
         One of `blocksim.ask.families.families_of`; by default the thickness, where there is
         one.
@@ -194,13 +170,13 @@ def bracket(
     if isinstance(asked, Family):
         require(over is None, "over", over, "left out: the family says it")
         return _answer(by_family(asked, within, given), given, started)
-    problem = problem_of(asked)
+    problem = cast("Problem[Any]", problem_of(asked))
     if over is None:
         known = families_of(problem)
         over = USUAL if USUAL in known else None
         if over is None:
             raise InputError("over", MISSING, f"one of {', '.join(known)}")
-    if within is None and isinstance(problem, Problem):
+    if within is None and not problem.in_space:
         offered = offers_of(problem)
         threshold = None if offered is None else offered.threshold(over)
         if threshold is not None:

@@ -18,19 +18,19 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from queue import Empty, Queue
-from typing import Literal
+from typing import Any, Literal
 
 from blocksim.ask.check import check
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.errors import BlocksimError, InputError, in_line
 from blocksim.common.processes import Crew, processes
-from blocksim.kinds.files import any_of, load_any, with_friction, written
+from blocksim.kinds.changes import with_friction
+from blocksim.kinds.files import load_structure, structure_of, written
 from blocksim.kinds.offers import offers_of
 from blocksim.limit.determinate import margin_of_stack, margin_of_tower
 from blocksim.simulation.verdict import Verdict
 
-Structure = str | bytes | Path | Mapping[str, object] | Problem | SpatialProblem
+Structure = str | bytes | Path | Mapping[str, object] | Problem[Any]
 """A line of JSON, a file, what such a file says, or a problem."""
 NEAR = 1e-6
 """Margin up to which the ordinary check decides."""
@@ -245,12 +245,12 @@ def _told(structure: Structure, friction: float | None) -> Told:
     return Told(verdict=verdict.value, margin=margin, title=problem.title)
 
 
-def _read(structure: Structure, friction: float | None) -> Problem | SpatialProblem:
+def _read(structure: Structure, friction: float | None) -> Problem[Any]:
     """Make a problem of a line, a file, or what one says."""
-    if isinstance(structure, Problem | SpatialProblem):
+    if isinstance(structure, Problem):
         return structure
     if isinstance(structure, Path):
-        return load_any(structure, friction=friction)
+        return load_structure(structure, friction=friction)
     if isinstance(structure, str | bytes):
         text = structure.encode() if isinstance(structure, str) else structure
         if len(text) > LARGEST:
@@ -264,15 +264,15 @@ def _read(structure: Structure, friction: float | None) -> Problem | SpatialProb
             raise InputError("line", words, "one JSON object in a line") from None
     else:
         said = structure
-    return any_of(said if friction is None else with_friction(said, friction))
+    return structure_of(said if friction is None else with_friction(said, friction))
 
 
-def _verdict(problem: Problem | SpatialProblem) -> tuple[Verdict, float | None]:
+def _verdict(problem: Problem[Any]) -> tuple[Verdict, float | None]:
     """Return verdict and margin, by statics alone where that tells them apart from 0."""
     margin = None
-    if isinstance(problem, SpatialProblem):
+    if problem.in_space:
         margin = margin_of_tower(problem)
-    elif problem.shaking is None and problem.is_planar and offers_of(problem) is None:
+    elif problem.has_statics and problem.strength is None and offers_of(problem) is None:
         margin = margin_of_stack(problem)
     if margin is not None and NEAR < abs(margin) < FARTHEST:
         return Verdict.STANDS if margin > 0 else Verdict.COLLAPSES, margin

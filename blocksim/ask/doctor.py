@@ -1,12 +1,18 @@
-"""What is installed, and what each method can do here."""
+"""What is installed, what each method can do here, and what it rests on.
+
+References are those of `blocksim/references.bib`.
+"""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, requires, version
+from importlib.resources import files
 
-from blocksim.ask.methods import METHODS, Method
+from blocksim.ask.methods import METHODS
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.version import __version__
 from blocksim.engines import get_engine
@@ -18,8 +24,6 @@ class Finding:
 
     Parameters
     ----------
-    method : str
-    sees : str
     finest : float
         Smallest relative width of a bracket it can answer for.
     remedy : str or None
@@ -35,24 +39,24 @@ class Finding:
     version: str | None
 
 
-def examine() -> list[Finding]:
-    """Look at every method of the ladder."""
-    return [_finding(name) for name in METHODS]
-
-
-def _finding(name: str) -> Finding:
-    """Look at one method; an engine of another package may be beyond loading."""
-    try:
-        method = METHODS[name]
-    except InputError as error:
-        return Finding(method=name, sees="", finest=0.0, remedy=str(error), version=None)
-    return Finding(
-        method=method.name,
-        sees=method.sees,
-        finest=method.finest,
-        remedy=method.missing,
-        version=_version(method),
-    )
+def examine() -> Iterator[Finding]:
+    """Look at every method of the ladder; an engine of others may be beyond loading."""
+    for name in METHODS:
+        try:
+            method = METHODS[name]
+        except InputError as error:
+            yield Finding(method=name, sees="", finest=0.0, remedy=str(error), version=None)
+            continue
+        found = __version__
+        if not method.is_static:
+            found = None if method.missing else get_engine(method.name).version
+        yield Finding(
+            method=method.name,
+            sees=method.sees,
+            finest=method.finest,
+            remedy=method.missing,
+            version=found,
+        )
 
 
 def libraries() -> dict[str, str | None]:
@@ -69,14 +73,48 @@ def libraries() -> dict[str, str | None]:
     return {name: _installed(name) for name in sorted(names)}
 
 
-def _version(method: Method) -> str | None:
-    if method.is_static:
-        return __version__
-    return None if method.missing else get_engine(method.name).version
-
-
 def _installed(library: str) -> str | None:
     try:
         return version(library)
     except PackageNotFoundError:
         return None
+
+
+def cite(*methods: str) -> str:
+    """Return BibTeX of blocksim, of the paper, and of what methods rest on.
+
+    Parameters
+    ----------
+    *methods : str
+        `theory`, `limit`, `direct`, `pymunk`, `pybullet` or `mujoco`; or `all`.
+
+    Returns
+    -------
+    str
+        Entries in the order of the file, an empty line between them.
+
+    Raises
+    ------
+    InputError
+        If there is no such method.
+
+    Examples
+    --------
+    >>> import blocksim
+    >>> [line for line in blocksim.cite("mujoco").splitlines() if line[:1] == "@"]
+    ['@software{blocksim,', '@article{CocchettiRizzi2024,', '@inproceedings{Todorov2012,']
+    """
+    for each in methods:
+        known = each == "all" or each in METHODS
+        require(known, "method", each, f"all, or one of {', '.join(METHODS)}")
+    wanted = {*METHODS} if "all" in methods else {*methods}
+    text = (files("blocksim") / "references.bib").read_text(encoding="utf-8")
+    entries = re.findall(r"^@.*?^\}$", text, flags=re.MULTILINE | re.DOTALL)
+    chosen = [each for each in entries if not _of(each) or _of(each) & wanted]
+    return "\n\n".join(chosen).replace("VERSION", __version__)
+
+
+def _of(entry: str) -> set[str]:
+    """Return the methods that an entry is cited for."""
+    found = re.search(r"keywords\s*=\s*\{([^}]*)\}", entry)
+    return {each.strip() for each in found[1].split(",")} if found else set()

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from blocksim.ask.searches import Search
 
 Within = tuple[float, float]
-Ask = Callable[[float, Within, bool], "Search"]
-"""From a value of limit analysis, where to search around it, and whether it stands above it."""
+Ask = Callable[[float, bool], "Search"]
+"""From a value of limit analysis, and whether it stands above it."""
 
 Change = tuple[Callable[[float], Problem], float, bool]
 """Value to problem, the value of the change, and whether it stands above it."""
@@ -54,7 +54,6 @@ def tried_ends(family: Family[Any], first: Search, ask: Ask) -> tuple[Stands, ..
 
     Parameters
     ----------
-    family : Family
     first : Search
         What came of `family.exact()`.
     ask : callable
@@ -67,7 +66,7 @@ def tried_ends(family: Family[Any], first: Search, ask: Ask) -> tuple[Stands, ..
         if math.isinf(value):
             return None
         same = stands_above == (family.stands == "high") and value == family.exact()
-        found = first if same else ask(value, around(family, value), stands_above)
+        found = first if same else ask(value, stands_above)
         return End(
             limit=value,
             falls=found.falls,
@@ -81,7 +80,7 @@ def tried_ends(family: Family[Any], first: Search, ask: Ask) -> tuple[Stands, ..
     )
 
 
-def around(family: Family[Any], value: float) -> Within:
+def neighbourhood(family: Family[Any], value: float) -> Within:
     """Return where there is no change but this one: half of the way to the next, both ways."""
     ends = [end for each in family.intervals or () for end in (each.low, each.high)]
     below = [end for end in ends if end < value and math.isfinite(end)]

@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Generic, Literal
 
 import numpy as np
 
-from blocksim.ask.options import Of
 from blocksim.ask.scan import TRIED, Scan, least_friction, standing_at
+from blocksim.blocks.assembly import Blocks
+from blocksim.blocks.maker import Kind
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.shaking import AMPLITUDE, DURATION, Shaking
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.blocks.shaking import AMPLITUDE, DURATION
 from blocksim.common.checks import PUSH
 from blocksim.common.errors import InputError
 from blocksim.limit.intervals import Interval, over_factor, over_tilt
@@ -34,13 +34,13 @@ LEANEST = 89.999
 
 
 @dataclass(frozen=True, kw_only=True)
-class Family(Generic[Of]):
+class Family(Generic[Blocks]):
     """A problem for each value of one parameter.
 
     Parameters
     ----------
     problem : Problem
-        Of which it is.
+        What it is a family of.
     name, unit : str
     at : callable
         Value to problem.
@@ -59,9 +59,9 @@ class Family(Generic[Of]):
         Where the parameter is the motion of supports.
     """
 
-    problem: Of
+    problem: Problem[Blocks]
     name: str
-    at: Callable[[float], Of]
+    at: Callable[[float], Problem[Blocks]]
     high: float
     low: float = 0.0
     unit: str = ""
@@ -90,7 +90,7 @@ class Family(Generic[Of]):
             if each.low < self.high and each.high >= self.low
         )
 
-    def of(self, problem: Of) -> Family[Of]:
+    def of(self, problem: Problem[Blocks]) -> Family[Blocks]:
         """Return the same family of another problem."""
         return family_of(problem, self.name)
 
@@ -106,7 +106,7 @@ class Family(Generic[Of]):
         return first.high if self.stands == "low" else max(first.low, 0.0)
 
 
-def family_of(problem: Problem | SpatialProblem, over: str) -> Family[Any]:
+def family_of(problem: Problem[Any], over: str) -> Family[Any]:
     """Return the family of a problem over one parameter.
 
     Parameters
@@ -120,25 +120,25 @@ def family_of(problem: Problem | SpatialProblem, over: str) -> Family[Any]:
     InputError
         If there is no such parameter, or nothing to multiply.
     """
-    if over in (IN_SPACE if isinstance(problem, SpatialProblem) else FAMILIES):
+    if over in (IN_SPACE if problem.in_space else FAMILIES):
         return FAMILIES[over](problem)
-    known = families_of(problem)
-    if over not in known:
-        raise InputError("--over", over, f"one of {', '.join(known)}")
-    return _over_parameter(problem, over)
+    kind = problem.maker
+    if kind is None or over not in kind.bracketed:
+        raise InputError("--over", over, f"one of {', '.join(families_of(problem))}")
+    return _over_parameter(problem, kind, over)
 
 
-def families_of(problem: Problem | SpatialProblem) -> tuple[str, ...]:
+def families_of(problem: Problem[Any]) -> tuple[str, ...]:
     """Names of the parameters there are: of any problem, of its shaking, and of its kind."""
     kind = problem.maker
     own = () if kind is None else kind.bracketed
-    if isinstance(problem, SpatialProblem):
+    if problem.in_space:
         return (*IN_SPACE, *own)
     still = {"amplitude", "duration"} if problem.shaking is None else set[str]()
     return (*(name for name in FAMILIES if name not in still), *own)
 
 
-def _over_load(problem: Problem | SpatialProblem) -> Family[Any]:
+def _over_load(problem: Problem[Any]) -> Family[Any]:
     if not problem.live:
         raise InputError("--over", "load", "another parameter: the structure has no live loads")
     return Family(
@@ -150,7 +150,7 @@ def _over_load(problem: Problem | SpatialProblem) -> Family[Any]:
     )
 
 
-def _over_tilt(problem: Problem | SpatialProblem) -> Family[Any]:
+def _over_tilt(problem: Problem[Any]) -> Family[Any]:
     def standing() -> tuple[Interval, ...]:
         if problem.strength is not None:
             # Of blocks that crush, tilts are tried, as parameters of a kind are.
@@ -182,7 +182,7 @@ def _over_lean(problem: Problem) -> Family:
     )
 
 
-def _over_mu(problem: Problem | SpatialProblem) -> Family[Any]:
+def _over_mu(problem: Problem[Any]) -> Family[Any]:
     return Family(
         problem=problem,
         name="mu",
@@ -198,30 +198,29 @@ def _over_spread(problem: Problem) -> Family:
     from blocksim.ask.spread import Spreading
 
     spreading = Spreading(problem)
+
+    def standing() -> tuple[Interval, ...] | None:
+        value = spreading.exact
+        return None if value is None else (Interval(low=-math.inf, high=value),)
+
     return Family(
         problem=problem,
         name="spread",
         unit="m",
         at=spreading.at,
         high=spreading.farthest,
-        standing=lambda: _until(spreading.exact),
+        standing=standing,
         remark=lambda: spreading.words,
         spreading=spreading,
     )
 
 
-def _until(value: float | None) -> tuple[Interval, ...] | None:
-    return None if value is None else (Interval(low=-math.inf, high=value),)
-
-
 def _over_push(problem: Problem) -> Family:
     # It follows blocks that move.
-    from blocksim.ask.push import asked, borne
+    from blocksim.ask.push import asked, borne, borne_words, worse
 
     both = borne(problem)
-    worst = min(both, key=lambda way: both[way])
-    given = asked(problem, worst)
-    said = ", ".join(f"{each:.6g} g to the {way}" for way, each in both.items())
+    given, said = asked(problem, worse(both)), borne_words(both)
     return Family(
         problem=problem,
         name="push",
@@ -229,39 +228,27 @@ def _over_push(problem: Problem) -> Family:
         at=given.with_load,
         high=PUSH.high,
         standing=lambda: over_factor(given),
-        remark=lambda: f"; it bears {said}",
+        remark=lambda: f"; {said}",
     )
 
 
-def _over_amplitude(problem: Problem) -> Family:
-    shaking = _shaking(problem, "amplitude")
-    return Family(
-        problem=problem,
-        name="amplitude",
-        unit="g",
-        at=lambda value: replace(problem, shaking=shaking.with_amplitude(value)),
-        high=AMPLITUDE.high,
-        start=shaking.amplitude or None,
-    )
-
-
-def _over_duration(problem: Problem) -> Family:
-    shaking = _shaking(problem, "duration")
-    return Family(
-        problem=problem,
-        name="duration",
-        unit="s",
-        at=lambda value: replace(problem, shaking=shaking.with_duration(value)),
-        low=DURATION.low,
-        high=DURATION.high,
-        start=shaking.duration,
-    )
-
-
-def _shaking(problem: Problem, name: str) -> Shaking:
-    if problem.shaking is None:
+def _over_shaking(problem: Problem, name: str) -> Family:
+    shaking = problem.shaking
+    if shaking is None:
         raise InputError("--over", name, "another parameter, or --shake: the ground is at rest")
-    return problem.shaking
+    known, start = {
+        "amplitude": (AMPLITUDE, shaking.amplitude or None),
+        "duration": (DURATION, shaking.duration),
+    }[name]
+    return Family(
+        problem=problem,
+        name=name,
+        unit=known.unit,
+        at=lambda value: replace(problem, shaking=replace(shaking, **{name: value})),
+        low=known.low,
+        high=known.high,
+        start=start,
+    )
 
 
 FAMILIES: dict[str, Callable[[Any], Family[Any]]] = {
@@ -271,20 +258,18 @@ FAMILIES: dict[str, Callable[[Any], Family[Any]]] = {
     "mu": _over_mu,
     "spread": _over_spread,
     "push": _over_push,
-    "amplitude": _over_amplitude,
-    "duration": _over_duration,
+    "amplitude": partial(_over_shaking, name="amplitude"),
+    "duration": partial(_over_shaking, name="duration"),
 }
 IN_SPACE = ("load", "tilt", "mu")
 """Those that problems in space have."""
 
 
-def _over_parameter(problem: Problem | SpatialProblem, name: str) -> Family[Any]:
+def _over_parameter(problem: Problem[Any], kind: Kind[Any], name: str) -> Family[Any]:
     """Return the family over a parameter of the kind a problem was made from.
 
     Its range is where the kind can be built, around the value at hand.
     """
-    kind = problem.maker
-    assert kind is not None  # noqa: S101
     known, low, high = kind.number(name)
     now = kind.value(name)
     ends = max(low, now / WIDEST), min(high, now * WIDEST)

@@ -3,34 +3,34 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from blocksim.ask.closed import closing_of_value
-from blocksim.ask.ends import Ask, Within, around, changes_of, tried_ends
+from blocksim.ask.ends import Ask, Within, changes_of, neighbourhood, tried_ends
 from blocksim.ask.families import Family
-from blocksim.ask.methods import choose, reduces
+from blocksim.ask.methods import choose, merged, reduces
 from blocksim.ask.options import Taken
 from blocksim.ask.searches import (
     FARTHEST,
     Search,
+    Sought,
     by_engine,
     by_programmes,
     followed,
     shaken,
     slowly,
 )
+from blocksim.ask.undecided import closing_of_value
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.checks import require
 from blocksim.engines import get_engine
 from blocksim.kinds.offers import Threshold
 from blocksim.simulation.verdict import Evidence, aside
 
 if TYPE_CHECKING:
-    from blocksim.engines.base import Engine, Method
+    from blocksim.engines.base import Method
     from blocksim.simulation.observation import Held
     from blocksim.simulation.simulated import Reduced
-    from blocksim.simulation.space import HeldInSpace
 
 LEAST = 1e-12
 """Least upper end of where to search."""
@@ -58,16 +58,30 @@ def by_threshold(problem: Problem, over: str, threshold: Threshold, given: Taken
         found, evidence = Search(falls=falls, stands=stands), (Evidence(test, said),)
         facts = threshold.facts(low=falls, high=stands, method=chosen.name)
     else:
+        from blocksim.simulation.observation import hold
+
         reduced = reduces(chosen, given.reduce, problem, by_maker=True)
+        engine = get_engine(chosen)
+        last: Reduced | None = None
+
+        def held_at(value: float) -> Held:
+            nonlocal last
+            reduction = threshold.reduction(value, last) if reduced else None
+            made = threshold.problem(value)
+            held = hold(made, engine, settings=given.settings, reduction=reduction)
+            # An engine may have split it, or given it up.
+            last = held.simulation.reduction
+            return held
+
         found = by_engine(
-            _Reduced(threshold, get_engine(chosen), given, reduce=reduced).held_at,
-            threshold.start,
-            (threshold.low, threshold.high),
-            given.tol,
-            name=threshold.name,
-            more_is_safer=True,
-            confirm=given.confirm,
-            progress=given.progress,
+            held_at,
+            Sought(
+                name=threshold.name,
+                start=threshold.start,
+                within=(threshold.low, threshold.high),
+                more_is_safer=True,
+                given=given,
+            ),
         )
         evidence = (Evidence("search", found.reason),)
         if reduced:
@@ -92,28 +106,6 @@ def by_threshold(problem: Problem, over: str, threshold: Threshold, given: Taken
             "changes": ((threshold.problem, threshold.exact, True),) if known else (),
         },
     )
-
-
-class _Reduced:
-    """One problem at one value after the other, reduced alike where that is asked for."""
-
-    def __init__(
-        self, threshold: Threshold, engine: Engine, given: Taken, *, reduce: bool
-    ) -> None:
-        self._threshold, self._engine, self._settings = threshold, engine, given.settings
-        self._reduce = reduce
-        self._last: Reduced | None = None
-
-    def held_at(self, value: float) -> Held:
-        """Ask the onset test at a value."""
-        from blocksim.simulation.observation import hold
-
-        reduction = self._threshold.reduction(value, self._last) if self._reduce else None
-        problem = self._threshold.problem(value)
-        held = hold(problem, self._engine, settings=self._settings, reduction=reduction)
-        # An engine may have split it, or given it up.
-        self._last = held.simulation.reduction
-        return held
 
 
 def _reduction(found: Search, by: str, most: int) -> tuple[Evidence, ...]:
@@ -146,7 +138,7 @@ def by_family(family: Family[Any], within: Within | None, given: Taken) -> Found
     exact = family.exact() if known else None
     found, ask = _sought(family, probe, chosen, given, (low, high), exact)
     remark = family.remark() if known else ""
-    closing = closing_of_value(family) if known and isinstance(probe, Problem) else ()
+    closing = closing_of_value(family) if known and not probe.in_space else ()
     evidence = (Evidence("search", found.reason), *aside("limit analysis", remark), *closing)
     most = len(probe.assembly.blocks)
     if (
@@ -161,7 +153,7 @@ def by_family(family: Family[Any], within: Within | None, given: Taken) -> Found
     lower, upper = ends if family.stands == "high" else ends[::-1]
     intervals = tried_ends(family, found, ask) if known else None
     # Proofs are of rigid blocks in the plane.
-    proves = chosen.name == "limit" and isinstance(probe, Problem) and probe.strength is None
+    proves = chosen.name == "limit" and not probe.in_space and probe.strength is None
     return Found(
         found,
         chosen,
@@ -183,7 +175,7 @@ def by_family(family: Family[Any], within: Within | None, given: Taken) -> Found
 
 def _sought(
     family: Family[Any],
-    probe: Problem | SpatialProblem,
+    probe: Problem[Any],
     chosen: Method,
     given: Taken,
     within: Within,
@@ -192,8 +184,8 @@ def _sought(
     """Search for the first change, and return what is asked of the others."""
     (low, high), rises = within, family.stands == "high"
 
-    def by_limit(start: float, within: Within, rises: bool) -> Search:  # noqa: ARG001
-        return by_programmes(family, start, rises=rises, tol=given.tol)
+    def by_limit(value: float, rises: bool) -> Search:
+        return by_programmes(family, value, rises=rises, tol=given.tol)
 
     if family.spreading is not None:
         if chosen.is_static:
@@ -202,39 +194,46 @@ def _sought(
         return found, by_limit
     if chosen.is_static:
         return by_programmes(family, exact, rises=rises, tol=given.tol), by_limit
-    if probe.shaking is not None:
+    if probe.is_moving:
         start = min(max(family.start or low + GUESS * (high - low), low), high)
-        return shaken(family, get_engine(chosen), start, within, given), by_limit
-    ask = _asking(family, chosen, given, within)
+        sought = Sought(
+            name=family.name, start=start, within=within, more_is_safer=rises, given=given
+        )
+        return shaken(family, get_engine(chosen), sought), by_limit
+    search = _searching(family, chosen, given, within)
+
+    def ask(value: float, rises: bool) -> Search:
+        return search(value, neighbourhood(family, value), rises)
+
     if exact and math.isfinite(exact) and low <= exact <= high:
-        return ask(exact, around(family, exact), rises), ask
-    return ask(low + GUESS * (high - low), within, rises), ask
+        return ask(exact, rises), ask
+    return search(low + GUESS * (high - low), within, rises), ask
 
 
-def _asking(family: Family[Any], chosen: Method, given: Taken, within: Within) -> Ask:
-    """Return what asks an engine around a value of limit analysis."""
-    # What moves blocks is loaded where it is asked for.
-    from blocksim.ask.engines import held, merged
+def _searching(
+    family: Family[Any], chosen: Method, given: Taken, within: Within
+) -> Callable[[float, Within, bool], Search]:
+    """Return what searches by an engine from a value on, and whether it stands above it."""
+    from blocksim.simulation.observation import hold
 
     (low, high), engine = within, get_engine(chosen)
 
-    def held_at(value: float) -> Held | HeldInSpace:
+    def held_at(value: float) -> Held[Any]:
         problem = family.at(value)
-        return held(problem, engine, given, merged(chosen, given, problem))
+        reduction = merged(chosen, given.reduce, problem)
+        return hold(problem, engine, settings=given.settings, reduction=reduction)
 
-    def ask(start: float, within: Within, rises: bool) -> Search:
+    def search(start: float, within: Within, rises: bool) -> Search:
         least, most = max(low, within[0], start / FARTHEST), min(high, within[1])
         if not least <= start <= most:
             return Search()
-        return by_engine(
-            held_at,
-            start,
-            (least, most),
-            given.tol,
+        sought = Sought(
             name=family.name,
+            start=start,
+            within=(least, most),
             more_is_safer=rises,
-            confirm=given.confirm,
-            progress=given.progress,
+            given=given,
         )
+        return by_engine(held_at, sought)
 
-    return ask
+    return search

@@ -1,7 +1,7 @@
 """Methods: which there are, what each sees, which one a question needs.
 
-`METHODS` go from the cheapest to the dearest, as measured (`analysis/costs.py`), and each
-says how fine a bracket it is good for, as measured (`analysis/random_arches.py`).
+`METHODS` go from the cheapest to the dearest, and each says how fine a
+bracket it is good for, both as measured (`analysis/costs.py`).
 So `auto` is the first of them that sees what is asked to that width.
 `theory` is passed over: it is of the continuous arch, which n voussoirs differ from by up to
 33/n^2, and no cheaper, since answers state both.
@@ -12,9 +12,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.later import Later
@@ -23,6 +23,9 @@ from blocksim.engines.base import Engine, Method
 from blocksim.kinds.offers import offers_of
 from blocksim.limit.bearing import bears
 from blocksim.simulation.simulated import BY_RULE, Overrides, require_setting
+
+if TYPE_CHECKING:
+    from blocksim.simulation.merging import Merging
 
 _STATICS = (
     Method(
@@ -55,7 +58,7 @@ def choose(
     method: str | Method,
     tol: float = 0.0,
     *,
-    problem: Problem | SpatialProblem | None = None,
+    problem: Problem[Any] | None = None,
     moving: bool = False,
     settings: Overrides = BY_RULE,
     reduce: bool | None = None,
@@ -84,39 +87,37 @@ def choose(
         nothing or does not see out of the plane where that is asked, or knows no such
         setting; if there is nothing to reduce.
     """
-    if method == "auto":
-        # Of engines of one's own it is not known which is right, nor how dear they are.
-        able = (
-            each
-            for each in map(METHODS.__getitem__, METHODS.shipped)
-            if each.name != "theory"
-            and each.finest <= (tol or math.inf)
-            and each.is_static <= (not moving)
-        )
-        rung = next((each for each in able if not _beyond(each, problem)), None)
-        if rung is None:
-            last = next(each for each in _shipped() if each.is_spatial)
-            raise InputError("method", method, f"another: {_beyond(last, problem)}")
-    else:
-        rung = _named(method)
-    beyond = _beyond(rung, problem)
+    auto = method == "auto"
+    chosen = _cheapest(tol, problem, moving=moving) if auto else _named(method)
+    beyond = _beyond(chosen, problem)
     if beyond:
-        raise InputError("method", rung.name, beyond)
-    if moving and rung.is_static:
+        raise InputError("method", chosen.name, beyond)
+    if moving and chosen.is_static:
         able = ", ".join(NAMES)
-        raise InputError("method", rung.name, f"one of {able}: {rung.name} moves no blocks")
-    still = problem is None or (problem.has_statics and isinstance(problem, Problem))
-    if reduce and not (still and _can_reduce(rung)):
+        raise InputError("method", chosen.name, f"one of {able}: {chosen.name} moves no blocks")
+    still = problem is None or (problem.has_statics and not problem.in_space)
+    if reduce and not (still and _can_reduce(chosen)):
         able = ", ".join(each.name for each in _shipped() if _can_reduce(each))
         allowed = f"left out but for {able}, in the plane, on ground at rest"
         raise InputError("reduce", reduce, allowed)
-    if tol and tol < rung.finest:
-        raise InputError("tol", tol, f"at least {rung.finest:g} for {rung.name}")
-    require_settings(rung, settings)
-    accuracy = settings.get("accuracy") if isinstance(problem, SpatialProblem) else None
+    if tol and tol < chosen.finest:
+        raise InputError("tol", tol, f"at least {chosen.finest:g} for {chosen.name}")
+    require_settings(chosen, settings)
+    accuracy = settings.get("accuracy") if problem and problem.in_space else None
     allowed = "left out in space: there settings.step says how fine a motion is"
     require(accuracy is None, "settings.accuracy", accuracy, allowed)
-    return rung
+    return chosen
+
+
+def _cheapest(tol: float, problem: Problem[Any] | None, *, moving: bool) -> Method:
+    """Return the cheapest method that can answer."""
+    # Of engines of one's own it is not known which is right, nor how dear they are.
+    for each in map(METHODS.__getitem__, METHODS.shipped):
+        fine = each.finest <= (tol or math.inf) and each.is_static <= (not moving)
+        if each.name != "theory" and fine and not _beyond(each, problem):
+            return each
+    last = next(each for each in _shipped() if each.is_spatial)
+    raise InputError("method", "auto", f"another: {_beyond(last, problem)}")
 
 
 def require_settings(method: Method, settings: Overrides) -> None:
@@ -148,11 +149,11 @@ def _shipped() -> Iterator[Engine]:
     return map(ENGINES.__getitem__, NAMES)
 
 
-def _beyond(method: Method, problem: Problem | SpatialProblem | None) -> str:
+def _beyond(method: Method, problem: Problem[Any] | None) -> str:
     """Say what is allowed where a problem is beyond a method; empty where it is not."""
     if problem is None:
         return ""
-    if isinstance(problem, SpatialProblem):
+    if problem.in_space:
         if method.name == "limit" or (isinstance(method, Engine) and method.build_in_space):
             return ""
         able = ", ".join(each.name for each in _shipped() if each.build_in_space)
@@ -160,9 +161,10 @@ def _beyond(method: Method, problem: Problem | SpatialProblem | None) -> str:
     if not problem.is_planar and not method.is_spatial:
         able = " or ".join(each.name for each in _shipped() if each.is_spatial)
         return f"{able} where gravity leans out of the plane"
-    if problem.shaking and not (isinstance(method, Engine) and method.shakes):
+    if problem.is_moving and not (isinstance(method, Engine) and method.shakes):
         able = ", ".join(each.name for each in _shipped() if each.shakes)
-        return f"one of {able}: {method.name} knows no ground that shakes"
+        what = "ground that shakes" if problem.shaking else "blocks that begin in motion"
+        return f"one of {able}: {method.name} knows no {what}"
     if problem.strength is not None and method.name != "limit":
         return f"limit, or no strength: blocks of {method.name} do not crush"
     if bears(problem) and method.name != "limit":
@@ -192,13 +194,22 @@ def reduces(
     return still and usual
 
 
-def chosen_words(method: str | Method, rung: Method) -> str:
+def chosen_words(method: str | Method, chosen: Method) -> str:
     """Say what `auto` took and why, to be added to the reason of an answer."""
     if method != "auto":
         return ""
-    if rung.is_spatial:
+    if chosen.is_spatial:
         seen = "can move blocks out of the plane"
     else:
-        seen = "sees the blocks as built" if rung.is_static else "can move blocks"
-    fine = f"brackets down to {rung.finest:g}" if rung.finest else "is exact"
-    return f"; {rung.name}, as no cheaper method {seen} and {fine}"
+        seen = "sees the blocks as built" if chosen.is_static else "can move blocks"
+    fine = f"brackets down to {chosen.finest:g}" if chosen.finest else "is exact"
+    return f"; {chosen.name}, as no cheaper method {seen} and {fine}"
+
+
+def merged(method: Method, reduce: bool | None, problem: Problem[Any]) -> Merging | None:
+    """Return the blocks that move as one, where fewer than all are simulated."""
+    if problem.in_space or not reduces(method, reduce, problem):
+        return None
+    from blocksim.simulation.merging import Merging
+
+    return Merging.of(problem)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from blocksim.ask.spread import Spreading, happening_words
+from blocksim.ask.spread import Spreading, event_words
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
@@ -37,7 +37,7 @@ def spread_by(problem: Problem, value: float) -> Problem:
     followed = exact is not None or value <= path.value
     require(followed, "spread", value, f"at most {path.value:.6g} m: farther is not followed")
     require(value <= spreading.farthest, "spread", value, f"at most {spreading.farthest:.6g} m")
-    said = [happening_words(each) for each in spreading.events if each.value <= value]
+    said = [event_words(each) for each in spreading.events if each.value <= value]
     left = math.inf if exact is None else exact - value
     if exact is None:
         said.append(f"it is followed up to {path.value:.6g} m")

@@ -3,30 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypedDict, Union, overload
+from typing import TypedDict
 
-from blocksim.blocks.maker import Kind, Maker
+from blocksim.blocks.assembly import Blocks
+from blocksim.blocks.maker import Kind
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.checks import WIDTH, require
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Method
 from blocksim.simulation.simulated import BY_RULE, Overrides
 
-if TYPE_CHECKING:
-    from typing_extensions import TypeVar
-
-    from blocksim.blocks.space.maker import SolidMaker
-
-    Of = TypeVar("Of", bound=Problem | SpatialProblem, default=Problem)
-else:
-    from typing import TypeVar
-
-    Of = TypeVar("Of")
-
-Asked = Problem | Maker
-AskedInSpace = Union[SpatialProblem, "SolidMaker"]
-"""What is asked about, in the plane and in space; of a maker its problem."""
+Asked = Problem[Blocks] | Kind[Blocks]
+"""What is asked about: a problem, or what makes one."""
 
 
 class Options(TypedDict, total=False):
@@ -86,12 +74,6 @@ def taken(options: Options, *without: str) -> Taken:
     return Taken(**options)
 
 
-@overload
-def problem_of(asked: Asked) -> Problem: ...
-@overload
-def problem_of(asked: AskedInSpace) -> SpatialProblem: ...
-@overload
-def problem_of(asked: Asked | AskedInSpace) -> Problem | SpatialProblem: ...
-def problem_of(asked: Asked | AskedInSpace) -> Problem | SpatialProblem:
+def problem_of(asked: Asked[Blocks]) -> Problem[Blocks]:
     """Return the problem that is asked about."""
     return asked.problem() if isinstance(asked, Kind) else asked

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,7 +27,6 @@ class Curve:
 
     Parameters
     ----------
-    way : {"right", "left"}
     moved : tuple of float
         How far the centre of mass of all blocks has moved that way [m].
     pushes : tuple of float
@@ -71,9 +71,23 @@ def borne(problem: Problem) -> dict[str, float]:
     InputError
         If gravity leans out of the plane, or the ground shakes.
     """
-    require(problem.has_statics, "push", "given", "left out where it leans, or shakes")
+    allowed = "left out where gravity leans or the ground shakes"
+    require(problem.has_statics, "push", "given", allowed)
     found = {way: collapse(asked(problem, way)).load_factor for way in WAYS}
     return {way: -np.inf if each is None else float(each) for way, each in found.items()}
+
+
+def worse(both: Mapping[str, float]) -> str:
+    """Return the way in which less is borne; of two alike the right."""
+    return min(both, key=lambda way: (both[way], way == "left"))
+
+
+def borne_words(both: Mapping[str, float]) -> str:
+    """Say what is borne both ways."""
+    if max(both.values()) == -np.inf:
+        return "it bears no push either way"
+    said = ", ".join(f"{each:.6g} g to the {way}" for way, each in both.items())
+    return f"it bears {said}"
 
 
 def pushed(problem: Problem, share: float) -> Problem:
@@ -95,11 +109,9 @@ def pushed(problem: Problem, share: float) -> Problem:
     """
     PUSH.require("push", share)
     both = borne(problem)
-    worst = min(both, key=lambda way: (both[way], way == "left"))
-    said = ", ".join(f"{each:.6g} g to the {way}" for way, each in both.items())
-    note = f"pushed by {share:g} g to the {worst}, of both ways the worse: it bears {said}"
-    if min(both.values()) == -np.inf:
-        note = f"pushed by {share:g} g to the {worst}: it bears no push either way"
+    worst = worse(both)
+    less = ", of both ways the worse" if both[worst] > -np.inf else ""
+    note = f"pushed by {share:g} g to the {worst}{less}: {borne_words(both)}"
     dead = (*problem.dead, across(problem, WAYS[worst] * share))
     return replace(problem, dead=dead, notes=(*problem.notes, note))
 
@@ -114,24 +126,23 @@ def curve(problem: Problem, way: str) -> Curve:
     ----------
     problem : Problem
         In its plane.
-    way : {"right", "left"}
     """
     given = asked(problem, way)
-    lying, found = Displaced(given), collapse(given)
+    displaced, found = Displaced(given), collapse(given)
     factor, rates = found.load_factor, found.mechanism
     if factor is None or not np.isfinite(factor) or factor <= 0 or rates is None:
         return Curve(way=way, moved=(), pushes=(), ends="never" if factor else "none")
     masses = np.array([block.mass for block in problem.assembly.blocks])
     share = WAYS[way] * problem.assembly.size * masses / masses.sum()
-    now, lost = lying.opened(lying.start, rates, 0.0)
+    now, lost = displaced.opened(displaced.start, rates, 0.0)
     moved, pushes, gone = [0.0], [factor], 0.0
-    live = given.of_load(given.live[0])
+    live = given.live_forces
     while lost is None and len(moved) < STEPS:
-        step = WAY / lying.fastest(rates)
-        ahead = lying.carried(now, 0.0, now.poses + step * rates)
+        step = WAY / displaced.fastest(rates)
+        ahead = displaced.carried(now, 0.0, now.poses + step * rates)
         rates = ahead.poses - now.poses
-        middle = lying.problem(replace(now, poses=(now.poses + ahead.poses) / 2))
-        push = -float((middle.with_load(0.0).pull() * rates).sum()) / float(
+        middle = displaced.problem(replace(now, poses=(now.poses + ahead.poses) / 2))
+        push = -float((middle.with_load(0.0).applied_forces() * rates).sum()) / float(
             (live * rates).sum()
         )
         far = float(share @ rates[:, 0])
@@ -139,15 +150,11 @@ def curve(problem: Problem, way: str) -> Curve:
         pushes.append(push)
         gone, now = gone + far, ahead
         if push <= 0:
-            return Curve(
-                way=way, moved=_to_none(moved, pushes), pushes=(*pushes[:-1], 0.0), ends="none"
-            )
-        if lying.closing(now) < 0:
+            # The last place is where the push vanishes, along a straight line.
+            (one, other), (start, end) = moved[-2:], pushes[-2:]
+            moved[-1] = one + (other - one) * start / (start - end)
+            pushes[-1], lost = 0.0, "none"
+            break
+        if displaced.closing(now) < 0:
             lost = "closes"
     return Curve(way=way, moved=tuple(moved), pushes=tuple(pushes), ends=lost or "range")
-
-
-def _to_none(moved: list[float], pushes: list[float]) -> tuple[float, ...]:
-    """Return the places with the last where the push vanishes, along a straight line."""
-    (one, other), (start, end) = moved[-2:], pushes[-2:]
-    return (*moved[:-1], one + (other - one) * start / (start - end))

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from blocksim.blocks.assembly import Array, displacement
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.groups import Group, groups_of
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.checks import require
 from blocksim.common.progress import Progress, silent
 
@@ -57,9 +56,9 @@ def rest_words(rest: Rest | None, motion: Moving | None = None, *, asked: bool) 
     return f"{said}; let go along that motion in direct {ends}"
 
 
-def require_rest(problem: Problem | SpatialProblem) -> None:
+def require_rest(problem: Problem[Any]) -> None:
     """Raise `InputError` where it cannot be found out whether blocks must rest."""
-    plane = isinstance(problem, Problem)
+    plane = not problem.in_space
     require(plane, "must_rest", "asked", "left out: it is not known in space")
     allowed = "left out where gravity leans or the ground shakes"
     require(problem.has_statics, "must_rest", "asked", allowed)
@@ -86,7 +85,6 @@ def rest_of(
         Whether there are forces of equilibrium; None where that was not found out.
     moved : bool
         Whether a motion was seen.
-    progress : Progress, optional
 
     Returns
     -------
@@ -116,6 +114,8 @@ def let_go(
 ) -> Recording:
     """Let blocks go slowly along a motion in `direct`, and record them until they rest.
 
+    The title of the recording says that they were pushed.
+
     What moves is let go without what rests, which may be heavier by far.
 
     Parameters
@@ -126,7 +126,6 @@ def let_go(
         Velocities or accelerations in proportion to those with which they begin.
     until : float
         Displacement at which it ends [size].
-    progress : Progress, optional
     """
     from blocksim.engines.direct import ENGINE, Blocks
     from blocksim.simulation.recording import Recording
@@ -136,7 +135,7 @@ def let_go(
     moving = [group for group in groups_of(problem) if way[group.blocks].any()]
     worlds = [Blocks(group.problem, settings) for group in moving]
     built = assembly.built[:-1]
-    start = way * SPEED / float(displacement(way, assembly))
+    start = way * SPEED / float(assembly.displacement(way))
     for group, world in zip(moving, worlds, strict=True):
         world.push(start[group.blocks])
     steps = round(LONG / settings.step / LOOKS)
@@ -149,12 +148,13 @@ def let_go(
         times.append(times[-1] + steps * settings.step)
         poses.append(_poses(built, moving, worlds))
         progress((look + 1) / LOOKS, "let go along a motion")
-        gone = float(displacement(poses[-1] - built, assembly)) > until
-        if gone or float(displacement(speeds, assembly)) < STILL:
+        gone = float(assembly.displacement(poses[-1] - built)) > until
+        if gone or float(assembly.displacement(speeds)) < STILL:
             break
     qualities = [world.quality() for world in worlds]
+    title = f"{problem.title or 'blocks'}, pushed along a motion that friction lets begin"
     return Recording(
-        problem=problem,
+        problem=replace(problem, title=title),
         engine=ENGINE.name,
         engine_version=ENGINE.version,
         settings=settings,

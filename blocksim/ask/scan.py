@@ -11,23 +11,17 @@ import math
 from collections.abc import Callable, Sequence
 from functools import cached_property, lru_cache
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.errors import InputError
-from blocksim.common.later import Library
+from blocksim.common.later import optimize
 from blocksim.limit.intervals import Interval
 from blocksim.limit.statics import standing_margin
 
-if TYPE_CHECKING:
-    from scipy import optimize
-else:
-    optimize = Library("scipy.optimize")
-
-At = Callable[[float], Problem | SpatialProblem]
+At = Callable[[float], Problem[Any]]
 """Value to problem."""
 ENOUGH = 1e-9
 """Lack of force at which limit analysis still calls blocks at rest [mean weights]."""
@@ -109,10 +103,10 @@ def standing_at(at: At, values: Sequence[float]) -> tuple[Interval, ...]:
     return (*found, Interval(low=low, high=math.inf)) if stood[-1] else tuple(found)
 
 
-def least_friction(problem: Problem | SpatialProblem, most: float) -> tuple[Interval, ...]:
+def least_friction(problem: Problem[Any], most: float) -> tuple[Interval, ...]:
     """Find the friction from which on forces of equilibrium exist, up to a bound."""
 
-    def at(mu: float) -> Problem | SpatialProblem:
+    def at(mu: float) -> Problem[Any]:
         return problem.with_friction(mu)
 
     if standing_margin(at(most)) < -ENOUGH:
@@ -129,7 +123,6 @@ def root(at: At, low: float, high: float, *, rises: bool) -> float:
     ----------
     at : callable
         Value to problem.
-    low, high : float
     rises : bool
         Whether it is the higher one that stands.
     """

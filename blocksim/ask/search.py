@@ -14,10 +14,10 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
+from blocksim.arch.circular import ETA_MAX
 from blocksim.common.progress import Progress, silent
 from blocksim.simulation.verdict import Verdict
 
-ETA_MAX = 2.0
 FIRST_STEP = 0.01
 """First guess of the bracket's half-width, relative; doubled until it holds."""
 THINNEST = 1e-6
@@ -45,7 +45,6 @@ class Bisection:
     ----------
     judge : callable
         Value to answer.
-    progress : Progress, optional
     floor, ceiling : float
         Values beyond which the search is given up.
     name : str

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from blocksim.ask.ends import Within
 from blocksim.ask.families import Family
 from blocksim.ask.options import Taken
 from blocksim.ask.search import Answer, Bisection
-from blocksim.blocks.space.problem import SpatialProblem
-from blocksim.common.progress import Progress, silent
+from blocksim.blocks.problem import Problem
+from blocksim.common.progress import Progress
 from blocksim.limit import equilibrium
 from blocksim.limit.statics import exists
 from blocksim.simulation.verdict import Verdict
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from blocksim.engines.base import Engine
     from blocksim.limit.proof import Proof
     from blocksim.simulation.observation import Held, Observation
-    from blocksim.simulation.space import HeldInSpace
 
 SURE = (1e-8, 1e-7, 1e-6)
 """How far to both sides of its value limit analysis is asked again, the first that tells,
@@ -71,6 +70,58 @@ class Search:
     collapse: Observation | None = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class Sought:
+    """The change from standing to falling that an engine is to find.
+
+    Parameters
+    ----------
+    name : str
+        What the value is.
+    start : float
+        Where to begin.
+    within : tuple of float
+        Values beyond which the search is given up.
+    more_is_safer : bool
+        Whether it stands above the change.
+    given : Taken
+        How finely, and whether both ends are to be confirmed.
+    """
+
+    name: str
+    start: float
+    within: Within
+    more_is_safer: bool
+    given: Taken
+
+    def by(
+        self, judge: Callable[[float], Answer]
+    ) -> tuple[Bisection, float | None, float | None]:
+        """Search, and return the nearest values that fell and that stood.
+
+        A bisection knows values only of which more is safer: of others it is given the inverse.
+        """
+        low, high = self.within
+
+        def turned(value: float) -> float:
+            # The inverse of an inverse is rounded, and no value beyond the range is asked.
+            return value if self.more_is_safer else min(max(1 / value, low), high)
+
+        floor, ceiling = (low, high) if self.more_is_safer else (1 / high, 1 / low)
+        search = Bisection(
+            lambda strength: judge(turned(strength)),
+            self.given.progress,
+            floor=floor,
+            ceiling=ceiling,
+            name=self.name,
+        )
+        search.expand(self.start if self.more_is_safer else 1 / self.start)
+        search.bisect(self.given.tol)
+        ends = (search.low, search.high)
+        falls, stands = (None if end is None else turned(end) for end in ends)
+        return search, falls, stands
+
+
 def followed(
     family: Family[Any], spreading: Spreading, exact: float | None, tol: float
 ) -> Search:
@@ -107,32 +158,19 @@ def slowly(
     )
 
 
-def shaken(
-    family: Family[Any],
-    engine: Engine,
-    start: float,
-    within: Within,
-    given: Taken,
-) -> Search:
+def shaken(family: Family[Any], engine: Engine, sought: Sought) -> Search:
     """Search for the change by shaking the blocks, each time until they lie still."""
     from blocksim.simulation.shaken import shake
 
-    least, most = max(within[0], start / FARTHEST), min(within[1], start * FARTHEST)
+    given, (low, high) = sought.given, sought.within
+    near = max(low, sought.start / FARTHEST), min(high, sought.start * FARTHEST)
 
     def judge(value: float) -> Answer:
         # Nothing leads from how it falls to where it stands: the bracket is halved.
         seen = shake(family.at(value), engine, repeat=False, settings=given.settings)
         return Answer(seen.verdict, 0.0)
 
-    search, falls, stands = _sought(
-        judge,
-        start,
-        (least, most),
-        given.tol,
-        name=family.name,
-        more_is_safer=family.stands == "high",
-        progress=given.progress,
-    )
+    search, falls, stands = replace(sought, within=near).by(judge)
     confirmed, words = None, ""
     if given.confirm and falls is not None and stands is not None:
         confirmed = all(
@@ -160,7 +198,6 @@ def proofs_beside(
     ----------
     at : callable
         Value to problem.
-    value : float
     rises : bool
         Whether it stands above the value.
     """
@@ -185,7 +222,7 @@ def by_programmes(
         least = family.low
         reason = f"forces of equilibrium exist down to {least:.6g}"
         return Search(stands=least, runs=1, reason=reason)
-    spatial = isinstance(family.at(exact), SpatialProblem)
+    spatial = family.problem.in_space
     told: list[bool | None] = []
     falls = stands = exact
     runs = 0
@@ -197,51 +234,26 @@ def by_programmes(
         if told == [False, True]:
             break
     confirmed = told == [False, True]
-    words = "confirmed" if confirmed else "not confirmed"
-    programmes = "cone" if spatial else "linear"
+    programmes = f"two more {'cone' if spatial else 'linear'} programmes at the ends"
+    said = f"{programmes} confirm it" if confirmed else f"{programmes} do not confirm it"
     return Search(
         falls=falls,
         stands=stands,
         confirmed=confirmed,
         runs=runs,
-        reason=f"limit analysis, {words} by two more {programmes} programmes at the ends",
+        reason=f"limit analysis; {said}",
     )
 
 
-def by_engine(
-    held_at: Callable[[float], Held | HeldInSpace],
-    start: float,
-    within: tuple[float, float],
-    tol: float,
-    *,
-    name: str,
-    more_is_safer: bool,
-    confirm: bool = True,
-    progress: Progress = silent,
-) -> Search:
+def by_engine(held_at: Callable[[float], Held[Any]], sought: Sought) -> Search:
     """Search with the onset test, then, if asked for, let the blocks go at both ends.
 
     Parameters
     ----------
     held_at : callable
         Value to blocks after the onset test.
-    start : float
-        Where to begin.
-    within : tuple of float
-        Values beyond which the search is given up.
-    tol : float
-        Relative width at which to end.
-    name : str
-        What the value is.
-    more_is_safer : bool
-        Whether it stands above the change.
-    confirm : bool
-        Let the blocks go at both ends.
-    progress : Progress, optional
     """
-    from blocksim.ask.engines import concluded
-
-    ends: dict[Verdict, tuple[float, Held | HeldInSpace]] = {}
+    ends: dict[Verdict, tuple[float, Held[Any]]] = {}
     blocks = splits = both = 0
 
     def judge(value: float) -> Answer:
@@ -253,28 +265,8 @@ def by_engine(
         ends[held.onset.verdict] = value, held
         return Answer(held.onset.verdict, held.onset.acceleration)
 
-    search, falls, stands = _sought(
-        judge,
-        start,
-        within,
-        tol,
-        name=name,
-        more_is_safer=more_is_safer,
-        progress=progress,
-    )
-    agreed: list[bool] = []
-    collapse = None
-    for expected in (Verdict.COLLAPSES, Verdict.STANDS):
-        # The end that falls tells how it falls, too.
-        if expected in ends and (confirm or expected is Verdict.COLLAPSES):
-            value, held = ends[expected]
-            if confirm:
-                progress(0.95, f"moving run at {name} {value:.6g}")
-            ended = concluded(held, moving=confirm, progress=silent)
-            agreed.append(ended.verdict is expected)
-            if ended.verdict is Verdict.COLLAPSES:
-                collapse = ended
-    confirmed = all(agreed) if confirm and agreed else None
+    search, falls, stands = sought.by(judge)
+    confirmed, collapse = _let_go(ends, sought)
     words = {True: "confirmed", False: "not confirmed", None: "not tried"}[confirmed]
     reason = f"onset test at {search.runs} values, ends {words} by moving runs"
     if both:
@@ -292,35 +284,21 @@ def by_engine(
     )
 
 
-def _sought(
-    judge: Callable[[float], Answer],
-    start: float,
-    within: tuple[float, float],
-    tol: float,
-    *,
-    name: str,
-    more_is_safer: bool,
-    progress: Progress,
-) -> tuple[Bisection, float | None, float | None]:
-    """Search, and return the nearest values that fell and that stood.
+def _let_go(
+    ends: Mapping[Verdict, tuple[float, Held[Any]]], sought: Sought
+) -> tuple[bool | None, Observation | None]:
+    """Let blocks go at both ends of a bracket, or tell of the one that falls how it does."""
+    from blocksim.simulation.observation import conclude
 
-    A bisection knows values only of which more is safer: of others it is given the inverse.
-    """
-    low, high = within
-
-    def turned(value: float) -> float:
-        # The inverse of an inverse is rounded, and no value beyond the range is asked.
-        return value if more_is_safer else min(max(1 / value, low), high)
-
-    floor, ceiling = (low, high) if more_is_safer else (1 / high, 1 / low)
-    search = Bisection(
-        lambda strength: judge(turned(strength)),
-        progress,
-        floor=floor,
-        ceiling=ceiling,
-        name=name,
-    )
-    search.expand(start if more_is_safer else 1 / start)
-    search.bisect(tol)
-    falls, stands = (None if end is None else turned(end) for end in (search.low, search.high))
-    return search, falls, stands
+    confirm, agreed = sought.given.confirm, list[bool]()
+    collapse = None
+    for expected in (Verdict.COLLAPSES, Verdict.STANDS):
+        if expected in ends and (confirm or expected is Verdict.COLLAPSES):
+            value, held = ends[expected]
+            if confirm:
+                sought.given.progress(0.95, f"moving run at {sought.name} {value:.6g}")
+            ended = conclude(held, moving=confirm)
+            agreed.append(ended.verdict is expected)
+            if ended.verdict is Verdict.COLLAPSES:
+                collapse = ended
+    return (all(agreed) if confirm and agreed else None), collapse

@@ -2,39 +2,26 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Unpack, overload
+from typing import TYPE_CHECKING, Any, Unpack, cast
 
 from blocksim.ask.methods import choose
-from blocksim.ask.options import Asked, AskedInSpace, Options, problem_of, taken
-from blocksim.blocks.problem import Problem
+from blocksim.ask.options import Asked, Options, problem_of, taken
+from blocksim.blocks.assembly import Blocks
 from blocksim.engines import get_engine
 
 if TYPE_CHECKING:
-    from blocksim.simulation.recorded import Recorded
+    from blocksim.blocks.problem import Problem
     from blocksim.simulation.recording import Recording
-    from blocksim.simulation.space import SpatialRecording
 
 
-@overload
 def simulate(
-    asked: Asked, *, duration: float | None = None, **options: Unpack[Options]
-) -> Recording: ...
-@overload
-def simulate(
-    asked: AskedInSpace, *, duration: float | None = None, **options: Unpack[Options]
-) -> SpatialRecording: ...
-@overload
-def simulate(
-    asked: Asked | AskedInSpace, *, duration: float | None = None, **options: Unpack[Options]
-) -> Recording | SpatialRecording: ...
-def simulate(
-    asked: Asked | AskedInSpace, *, duration: float | None = None, **options: Unpack[Options]
-) -> Recorded[Any]:
+    asked: Asked[Blocks], *, duration: float | None = None, **options: Unpack[Options]
+) -> Recording[Blocks]:
     """Let blocks go in an engine, after the onset test, and record them.
 
     Parameters
     ----------
-    asked : Problem, SpatialProblem, or a maker of one
+    asked : Problem, or a maker of one
     duration : float, optional
         Time to record [sqrt(size/g)]; by default until the verdict is certain, or, where
         the ground shakes, until the blocks lie still.
@@ -43,7 +30,7 @@ def simulate(
 
     Returns
     -------
-    Recording or SpatialRecording
+    Recording
 
     Raises
     ------
@@ -51,12 +38,22 @@ def simulate(
         If the method moves no blocks, or cannot do what the problem asks for.
     MissingPart
         If the engine's library is not installed.
+
+    Examples
+    --------
+    >>> from blocksim import CircularArch
+    >>> thin = CircularArch(half_angle_deg=90, thickness=0.08, voussoirs=9, friction=0.7)
+    >>> fall = simulate(thin, method="direct", duration=1.0)
+    >>> fall.poses.shape[1:], bool(fall.displacement[-1] > 0.01)
+    ((9, 3), True)
     """
-    given, problem = taken(options, "reduce", "tol", "confirm"), problem_of(asked)
+    given, problem = (
+        taken(options, "reduce", "tol", "confirm"),
+        cast("Problem[Any]", problem_of(asked)),
+    )
     chosen = choose(given.method, problem=problem, moving=True, settings=given.settings)
     engine = get_engine(chosen)
-    # What moves blocks is loaded where it is asked for.
-    if isinstance(problem, Problem) and problem.shaking is not None:
+    if problem.is_moving:
         from blocksim.simulation.shaken import shake
 
         seen = shake(
@@ -67,7 +64,8 @@ def simulate(
             settings=given.settings,
             progress=given.progress,
         )
-        return seen.recording
-    from blocksim.ask.engines import held
+        return cast("Any", seen.recording)
+    from blocksim.simulation.observation import hold
 
-    return held(problem, engine, given).record(duration, given.progress)
+    held = hold(problem, engine, settings=given.settings, progress=given.progress)
+    return held.record(duration, given.progress)

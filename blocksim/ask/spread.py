@@ -12,15 +12,16 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, side_name
 from blocksim.blocks.problem import Move, Problem
+from blocksim.blocks.road import remade
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
-from blocksim.engines.direct import ENGINE, rule
+from blocksim.engines.direct import ENGINE, USUAL
 from blocksim.engines.moving import DEEP, OnMovingSupports
 from blocksim.engines.stepping import UNSOLVED
 from blocksim.kinds.circular import CircularArch
 from blocksim.limit.bearing import bears
-from blocksim.limit.spreading import Path, follow, lying
+from blocksim.limit.spreading import Path, displaced_at, follow
 from blocksim.simulation.motion import FRAME
 from blocksim.simulation.recording import Recording
 
@@ -53,7 +54,7 @@ class OpenJoint:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Happening:
+class Event:
     """Something that happens as supports move.
 
     Parameters
@@ -86,17 +87,12 @@ class Slow:
         Whether every step was.
     runs : int
         How often the supports were stopped.
-    values : (frames,) float
-    poses : (frames, blocks + supports that move, 3) float
-        Of the first run, until they fall.
     """
 
     low: float | None
     high: float | None
     solved: bool
     runs: int
-    values: Array
-    poses: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +113,7 @@ class Spreading:
         asked = self.asked
         if not asked.moves and isinstance(asked.maker, CircularArch) and asked.maker.in_radii:
             # On two planes; what moves are supports that are drawn.
-            asked = asked.remade(asked.maker.between_supports())
+            asked = remade(asked, asked.maker.between_supports())
         supports = asked.assembly.supports
         allowed = "left out where supports move: blocks are rigid there"
         require(not bears(asked), "fill_passive", "given", "left out where supports move")
@@ -148,7 +144,7 @@ class Spreading:
 
     def at(self, value: float) -> Problem:
         """Return the problem as it lies where the supports have moved so far."""
-        return lying(self.problem, self.path, value)
+        return displaced_at(self.problem, self.path, value)
 
     @property
     def exact(self) -> float | None:
@@ -162,14 +158,14 @@ class Spreading:
     @property
     def words(self) -> str:
         """Say what happens on the way."""
-        return "".join(f"; {happening_words(event)}" for event in self.events)
+        return "".join(f"; {event_words(event)}" for event in self.events)
 
     @property
-    def events(self) -> tuple[Happening, ...]:
+    def events(self) -> tuple[Event, ...]:
         """What happens on the way, each with the joints that are open after it."""
         assembly = self.problem.assembly
         return tuple(
-            Happening(
+            Event(
                 value=event.value,
                 what=event.what,
                 joints=tuple(
@@ -198,10 +194,9 @@ class Spreading:
             Relative distance between the two positions.
         highest : float
             How far the supports move at most [m].
-        progress : Progress, optional
         """
         problem = self.problem
-        settings = replace(rule(problem.assembly), step=STEP)
+        settings = replace(USUAL, step=STEP)
 
         def stays(frame: _At) -> bool:
             stopped = OnMovingSupports(problem, settings, 0.0)
@@ -214,7 +209,7 @@ class Spreading:
         sideways = np.zeros_like(world.poses())
         sideways[: len(problem.assembly.blocks), 0] = SIDEWAYS * speed
         world.push(sideways)
-        first = frames = _run(world, highest, FAST * speed, progress)
+        frames = _run(world, highest, FAST * speed, progress)
         while True:
             whole = whole and solved(world)
             last, more = _last(frames, stays)
@@ -227,15 +222,7 @@ class Spreading:
             world = OnMovingSupports(problem, settings, speed)
             world.place(*frames[last])
             frames = _run(world, highest, FAST * speed, progress)
-        values, poses = zip(*first, strict=True)
-        return Slow(
-            low=low,
-            high=high,
-            solved=whole,
-            runs=runs,
-            values=np.array(values),
-            poses=np.array(poses),
-        )
+        return Slow(low=low, high=high, solved=whole, runs=runs)
 
     def recorded(self, progress: Progress = silent) -> Recording:
         """Move the supports by `direct`, faster than `slowly`, until the blocks have fallen.
@@ -245,7 +232,7 @@ class Spreading:
         Recording
             Of the blocks and, after them, the supports that move.
         """
-        settings = rule(self.problem.assembly)
+        settings = USUAL
         level = all(move.direction[1] >= 0 and not move.turn for move in self.problem.moves)
         deep = SHALLOW if level else DEEP
         world = OnMovingSupports(self.problem, settings, SEEN, deep)
@@ -262,7 +249,7 @@ class Spreading:
             # Supports that move are its last blocks; it says so by their moves.
             problem=replace(
                 world.problem,
-                title=f"{self.asked.title}, its supports move",
+                title=f"{self.asked.title or 'structure'}, its supports move",
                 moves=tuple(
                     replace(move, support=len(world.problem.assembly.supports) - 1)
                     for move in self.problem.moves
@@ -314,7 +301,7 @@ def _last(frames: Sequence[_At], stays: Callable[[_At], bool]) -> tuple[int, int
     return low, runs
 
 
-def happening_words(event: Happening) -> str:
+def event_words(event: Event) -> str:
     """Say what happens, and where."""
     said = ", ".join(f"{joint.a}-{joint.b} {joint.state}" for joint in event.joints)
     return f"at {event.value:.6g} m {_WORDS[event.what]}: {said}"

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from blocksim.ask.closed import closing_of_verdict
-from blocksim.blocks.assembly import Array, displacement
+from blocksim.ask.undecided import closing_of_verdict
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.limit import Equilibrium
 from blocksim.limit.crushing import Needed
 from blocksim.simulation.verdict import Evidence, Verdict
@@ -21,13 +20,11 @@ VERDICTS = {True: Verdict.STANDS, False: Verdict.COLLAPSES, None: Verdict.UNDECI
 """By whether forces of equilibrium exist."""
 
 
-def observed(
-    problem: Problem | SpatialProblem, rates: Array | None
-) -> tuple[ObservedJoint, ...]:
+def observed(problem: Problem[Any], rates: Array | None) -> tuple[ObservedJoint, ...]:
     """Tell what each joint does as blocks begin to move at some rates; closed at none."""
     if rates is None:
         return closed_joints(problem.assembly.joint_angles)
-    if isinstance(problem, SpatialProblem):
+    if problem.in_space:
         from blocksim.limit.space import observed_joints
 
         return observed_joints(problem, unit(rates, problem))
@@ -37,21 +34,21 @@ def observed(
     return classify(assembly, assembly.built[:-1] + PROBE * unit(rates, problem)[:, :3])
 
 
-def unit(rates: Array, problem: Problem | SpatialProblem) -> Array:
+def unit(rates: Array, problem: Problem[Any]) -> Array:
     """Scale rates so that the largest way of a corner is 1."""
-    if isinstance(problem, SpatialProblem):
+    if problem.in_space:
         from blocksim.limit.space import unit_rates
 
         return unit_rates(problem, rates)
-    largest = float(displacement(rates, problem.assembly))
+    largest = float(problem.assembly.displacement(rates))
     return rates / largest if largest > 0 else rates
 
 
 def static_evidence(
-    problem: Problem | SpatialProblem, static: Equilibrium | SpatialEquilibrium
+    problem: Problem[Any], static: Equilibrium | SpatialEquilibrium
 ) -> tuple[Evidence, ...]:
     """Say what limit analysis found."""
-    if isinstance(problem, Problem) and isinstance(static, Equilibrium):
+    if not problem.in_space and isinstance(static, Equilibrium):
         found = Evidence("limit analysis", _words(static))
         return (found, *closing_of_verdict(problem, stands=static.exists))
     assert not isinstance(static, Equilibrium)  # noqa: S101
@@ -62,39 +59,39 @@ def _words(static: Equilibrium) -> str:
     if static.exists:
         spare = max(0.0, static.margin)
         return (
-            "forces of equilibrium exist, and no contact is nearer to opening or sliding than "
-            f"by {spare:.3g} of its force"
+            "forces of equilibrium exist; the contact nearest to opening or sliding has "
+            f"{100 * spare:.3g}% of its force to spare"
         )
     if math.isinf(static.margin):
         return "no forces of equilibrium exist, even if contacts could pull"
     return (
-        "no forces of equilibrium exist: contacts would have to pull with "
-        f"{-static.margin:.3g} of what they carry"
+        "no forces of equilibrium exist: blocks would have to hold each other back with "
+        f"{-100 * static.margin:.3g}% of what contacts carry"
     )
 
 
 def _words_in_space(static: SpatialEquilibrium) -> str:
     """Say the same, and how near it was held to."""
-    own = "of the lighter block's share of weight beside it"
+    own = "of an even share of its block's weight"
     if static.exists:
         left = f", but for {static.gap:.1g} of a weight" if static.gap else ""
         return (
-            f"forces of equilibrium exist{left}; each contact presses by {static.margin:.3g} "
-            f"{own} more than its friction needs"
+            f"forces of equilibrium exist{left}; the contact nearest to opening or sliding has "
+            f"{100 * static.margin:.3g}% {own} to spare"
         )
     if static.exists is None:
         return (
-            "neither forces nor a motion pass the check: contacts press by "
-            f"{static.margin:.1g} {own} at most, "
+            "neither forces nor a motion pass the check: the contact nearest to opening or "
+            f"sliding has {100 * static.margin:.1g}% {own} to spare, "
             "which is nearer to the limit than floating-point numbers tell"
         )
     if math.isinf(static.margin):
         return "no forces of equilibrium exist, even if contacts could pull"
     most = 1 / static.gap if static.gap else math.inf
-    far = "" if math.isinf(most) else f" that are less than {most:.1g} times all weight"
+    far = "" if math.isinf(most) else f" up to {most:.1g} times all weight"
     return (
-        f"no forces of equilibrium exist{far}: contacts would have to pull by "
-        f"{-static.margin:.3g} {own}"
+        f"no forces of equilibrium exist{far}: a contact would have to hold its block back "
+        f"with {-100 * static.margin:.3g}% {own}"
     )
 
 
@@ -112,9 +109,9 @@ def _crushing(needed: Needed | None, strength: float) -> tuple[Verdict, str]:
         return Verdict.UNDECIDED, "the strength that is needed was not found"
     least, most = f"{needed.low / 1e6:.6g} MPa", f"{needed.high / 1e6:.6g} MPa"
     if needed.high <= strength:
-        said = f"forces of equilibrium exist that press joints by {most} at most"
+        said = f"forces of equilibrium exist that press no joint by more than {most}"
         return Verdict.STANDS, said
     if needed.low > strength:
-        said = f"forces of equilibrium exist, and all crush a joint: {least} are needed"
+        said = f"all forces of equilibrium crush a joint: a strength of {least} is needed"
         return Verdict.COLLAPSES, said
     return Verdict.UNDECIDED, f"the strength that is needed is between {least} and {most}"

@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
-from blocksim.common.later import Library
-
-if TYPE_CHECKING:
-    from scipy.spatial import transform
-else:
-    transform = Library("scipy.spatial.transform")
+from blocksim.common.later import csgraph, sparse, transform
 
 Owner = NDArray[np.int64]
 """The body each block is part of, (blocks,); bodies are numbered from 0."""
@@ -48,6 +42,40 @@ def problem_of_bodies(problem: Problem, owner: Owner) -> Problem:
         for loads in (problem.dead, problem.live)
     )
     return replace(problem, assembly=bodies, dead=dead, live=live)
+
+
+def connected(count: int, one: ArrayLike, other: ArrayLike) -> Owner:
+    """Return the group of each of so many things, of which some are connected in pairs.
+
+    Parameters
+    ----------
+    count : int
+    one, other : (pairs,) int
+    """
+    pairs = np.asarray(one), np.asarray(other)
+    graph = sparse.coo_array((np.ones(len(pairs[0])), pairs), shape=(count, count))
+    return csgraph.connected_components(graph, directed=False)[1].astype(np.int64)
+
+
+def parting(assembly: Assembly, rates: Array) -> tuple[Array, Array]:
+    """Return how fast the sides of joints part.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    rates : (blocks, 3) float
+
+    Returns
+    -------
+    ways : (joints, 2, 2) float
+        Of both ends on the block after, less those on the block before.
+    turns : (joints,) float
+        Rotations likewise.
+    """
+    moved, arms = np.vstack([rates, np.zeros(PLANAR)])[assembly.sides], assembly.joint_arms
+    across = np.stack([-arms[..., 1], arms[..., 0]], axis=-1)
+    before, after = moved[..., None, :2] + moved[..., None, 2:] * across
+    return after - before, moved[1, :, 2] - moved[0, :, 2]
 
 
 def within_bodies(assembly: Assembly, owner: Owner) -> NDArray[np.bool_]:

@@ -35,11 +35,6 @@ def resized(assembly: Assembly, sign: int) -> Assembly:
     """Return blocks grown (1) or shrunk (-1): joints longer or shorter by the gaps they close.
 
     Weights stay as they are. A corner on a face has no length that could change.
-
-    Parameters
-    ----------
-    assembly : Assembly
-    sign : 1 or -1
     """
     joints = tuple(_resized(joint, sign) for joint in assembly.joints)
     return replace(assembly, joints=joints)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from blocksim.blocks.assembly import Array
+from blocksim.blocks.block import Array
 from blocksim.blocks.outlines import before, following
 
 ALONG = 0.98

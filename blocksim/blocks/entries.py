@@ -19,10 +19,11 @@ from blocksim.common.checks import (
     PER_VOLUME,
     SMOOTH_OR_ROUGH,
     TURN,
+    VELOCITY,
     WEIGHT,
     Range,
 )
-from blocksim.common.tables import Words, Written, as_said
+from blocksim.common.tables import Words, Written
 
 Number = Annotated[float, Range(low=-1e15, high=1e15)]
 """One in a file that has no unit of its own."""
@@ -32,6 +33,8 @@ Times = Annotated[float, FACTOR]
 Length = Annotated[float, LENGTH]
 Step = Annotated[float, Range(low=0, high=LENGTH.high, unit="m")]
 Density = Annotated[float, PER_VOLUME]
+SPIN = Range(low=-5e5, high=5e5, unit="deg/s")
+Speed = Annotated[float, VELOCITY]
 Friction = Annotated[float, SMOOTH_OR_ROUGH]
 Point = tuple[Coordinate, Coordinate]
 Force = tuple[Newtons, Newtons]
@@ -73,6 +76,12 @@ class BlockEntry(Written):
         About its centre [kg m2]; by default that of the polygon.
     depth : float
         Length out of the plane [m].
+    velocity : point
+        Of its centre as it is let go [m/s]; by default it begins at rest.
+    spin_deg_s : float
+        Its rotation per second then, counter-clockwise [deg/s].
+    free : bool
+        Whether nothing has to hold it, as before it lands.
     """
 
     id: NewId
@@ -85,6 +94,9 @@ class BlockEntry(Written):
     centre: Point | None = None
     inertia: Annotated[float, INERTIA] | None = None
     depth: Length = 1.0
+    velocity: tuple[Speed, Speed] = (0.0, 0.0)
+    spin_deg_s: Annotated[float, SPIN] = 0.0
+    free: Fixed = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -179,6 +191,8 @@ class ShakeEntry(Written):
         Times of a record [s], growing.
     accelerations_g : list of float
         The acceleration across at each of them [g].
+    verticals_g : list of float
+        The acceleration upwards at each of them [g]; by default none.
     """
 
     shape: str | None = None
@@ -186,6 +200,7 @@ class ShakeEntry(Written):
     duration_s: Number | None = None
     times_s: Annotated[list[Number], Field(max_length=MOST_ROWS)] | None = None
     accelerations_g: Annotated[list[Number], Field(max_length=MOST_ROWS)] | None = None
+    verticals_g: Annotated[list[Number], Field(max_length=MOST_ROWS)] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -226,6 +241,7 @@ class Said(Written):
     load: Times = 0.0
     notes: Annotated[tuple[Note, ...], Field(max_length=MOST_NOTES)] = ()
     expect: Annotated[tuple[ExpectEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
+    quick: Annotated[bool, Field(strict=True)] = False
 
     @property
     def unit_weight(self) -> float:
@@ -273,7 +289,6 @@ class Around(Said):
     move: Annotated[tuple[MoveEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     shake: ShakeEntry | None = None
     size: Length | None = None
-    quick: Annotated[bool, Field(strict=True)] = False
 
 
 UNIT_WEIGHT = 1.0
@@ -303,25 +318,3 @@ class StructureFile(Around):
     joints: Annotated[list[JointEntry], Field(max_length=20 * MOST_BLOCKS)] | None = None
     tolerance: Step | None = None
     rounding: Step | None = None
-
-
-def entries_of(table: dict[str, Any]) -> StructureFile:
-    """Check the keys, types and ranges of a structure file of blocks.
-
-    Raises
-    ------
-    InputError
-        In one line: the first entry that is wrong.
-    """
-    return as_said(StructureFile, table)
-
-
-def around_of(table: dict[str, Any]) -> Around:
-    """Check the same of all keys but those of blocks.
-
-    Raises
-    ------
-    InputError
-        In one line: the first entry that is wrong.
-    """
-    return as_said(Around, table)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.outlines import following
+from blocksim.blocks.outlines import following, moments
+from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.touching import Touch
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
@@ -43,6 +44,8 @@ class Body:
         uniform density: where the weight acts says nothing of how a block turns.
     depth : float
         Out of the plane [m].
+    free : bool
+        Whether nothing has to hold it.
     """
 
     polygons: tuple[ArrayLike, ...]
@@ -52,6 +55,36 @@ class Body:
     centre: ArrayLike | None = None
     inertia: float | None = None
     depth: float = 1.0
+    free: bool = False
+
+    def measured(self, parts: tuple[Array, ...], index: int, density: float) -> dict[str, Any]:
+        """Return what makes a block of it, besides its corners."""
+        measured = moments(parts)
+        weight = density * measured.area * self.depth if self.weight is None else self.weight
+        field = f"blocks[{index}]"
+        require(0 < weight < np.inf, f"{field}.weight", weight, "above 0")
+        require(0 < self.depth < np.inf, f"{field}.depth", self.depth, "above 0")
+        mass = weight / STANDARD_GRAVITY
+        inertia = (
+            mass * measured.polar / measured.area if self.inertia is None else self.inertia
+        )
+        require(0 < inertia < np.inf, f"{field}.inertia", inertia, "above 0")
+        centre = (
+            measured.centroid if self.centre is None else np.array(self.centre, dtype=float)
+        )
+        require(
+            centre.shape == (2,) and bool(np.isfinite(centre).all()),
+            f"{field}.centre",
+            self.centre,
+            "two finite numbers",
+        )
+        return {
+            "centre": centre,
+            "mass": mass,
+            "inertia": inertia,
+            "depth": self.depth,
+            "name": self.name,
+        }
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

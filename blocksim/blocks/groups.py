@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import SUPPORT
+from blocksim.blocks.bodies import connected
 from blocksim.blocks.problem import Load, Problem
 
 
@@ -29,21 +30,11 @@ class Group:
 
 
 def groups_of(problem: Problem) -> Iterator[Group]:
-    """Return the groups of a problem's blocks; supports join none.
-
-    Parameters
-    ----------
-    problem : Problem
-    """
-    # Imported here: few ask, and it takes longer to load than an answer.
-    from scipy import sparse
-    from scipy.sparse.csgraph import connected_components
-
+    """Return the groups of a problem's blocks; supports join none."""
     arrays, count = problem.assembly.joint_arrays, len(problem.assembly.blocks)
     both = (arrays.before != SUPPORT) & (arrays.after != SUPPORT)
-    ends = arrays.before[both], arrays.after[both]
-    graph = sparse.coo_array((np.ones(len(ends[0])), ends), shape=(count, count))
-    many, group = connected_components(graph, directed=False)
+    group = connected(count, arrays.before[both], arrays.after[both])
+    many = int(group.max()) + 1
     one = np.where(arrays.before == SUPPORT, arrays.after, arrays.before)
     for each in range(many):
         blocks, joints = np.flatnonzero(group == each), np.flatnonzero(group[one] == each)

@@ -26,6 +26,16 @@ class JointState(StrEnum):
     HINGE_AND_SLIDES = "hinge-and-slides"
     OPEN = "open"
 
+    @classmethod
+    def of(cls, *, inner: bool, outer: bool, slides: bool = False) -> JointState:
+        """Return what a joint does of which ends open, and whose sides slide along it."""
+        if inner and outer:
+            return cls.OPEN
+        if inner or outer:
+            hinge = cls.HINGE_EXTRADOS if inner else cls.HINGE_INTRADOS
+            return cls.HINGE_AND_SLIDES if slides else hinge
+        return cls.SLIDES if slides else cls.CLOSED
+
 
 @dataclass(frozen=True, eq=False)
 class JointMotion:
@@ -93,43 +103,27 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
     )
 
 
-def overlap_share(assembly: Assembly, poses: Array) -> float:
-    """Deepest overlap at the end of a joint, as a share of the largest motion of a joint.
+def overlap_and_slip(assembly: Assembly, poses: Array) -> tuple[float, float]:
+    """Deepest overlap at the end of a joint, and largest slip of one, in the plane or across.
 
-    A motion that contacts allow has next to none; one driven by contacts that have not
-    converged presses blocks into each other.
+    Both are shares of the largest motion of a joint: opening by rotation, or slip. A motion
+    that contacts allow has next to no overlap; one driven by contacts that have not converged
+    presses blocks into each other.
     """
-    motion = joint_motion(assembly, poses)
-    gap = motion.gap.min(axis=1)
+    motion, joints = joint_motion(assembly, poses), assembly.joint_arrays
+    gap, slip = motion.gap.min(axis=1), np.abs(motion.slip)
+    # A corner has no length to open by rotation: it parts.
+    turned = np.abs(motion.turn) * joints.length
+    moves = [np.where(joints.is_corner, np.abs(motion.gap[:, 0]), turned), slip]
     if poses.shape[1] == SPATIAL:
         # Front and back: what turns about the joint's tangent.
-        gap = gap - _beyond_the_plane(assembly, poses)[0]
-    moved = _largest(assembly, motion, poses)
-    return max(0.0, -float(gap.min())) / moved if moved > 0 else 0.0
-
-
-def slip_share(assembly: Assembly, poses: Array) -> float:
-    """Largest slip of a joint, in the plane or across, as a share of the largest motion."""
-    motion = joint_motion(assembly, poses)
-    moved = _largest(assembly, motion, poses)
-    slip = np.abs(motion.slip)
-    if poses.shape[1] == SPATIAL:
-        slip = np.maximum(slip, _beyond_the_plane(assembly, poses)[1])
-    return float(slip.max()) / moved if moved > 0 else 0.0
-
-
-def _largest(assembly: Assembly, motion: JointMotion, poses: Array) -> float:
-    """Largest opening by rotation or slip of a joint, out of the plane, too.
-
-    A corner has no length to open by rotation: it parts.
-    """
-    joints = assembly.joint_arrays
-    turned = np.abs(motion.turn) * joints.length
-    turned = np.where(joints.is_corner, np.abs(motion.gap[:, 0]), turned)
-    moves = [turned, np.abs(motion.slip)]
-    if poses.shape[1] == SPATIAL:
-        moves += _beyond_the_plane(assembly, poses)
-    return max(float(move.max()) for move in moves)
+        rocked, across = _beyond_the_plane(assembly, poses)
+        gap, slip = gap - rocked, np.maximum(slip, across)
+        moves += [rocked, across]
+    moved = max(float(move.max(initial=0.0)) for move in moves)
+    if not moved > 0:
+        return 0.0, 0.0
+    return max(0.0, -float(gap.min())) / moved, float(slip.max()) / moved
 
 
 def _beyond_the_plane(assembly: Assembly, poses: Array) -> tuple[Array, Array]:
@@ -212,14 +206,14 @@ def classify(
     motion, joints = joint_motion(assembly, poses), assembly.joint_arrays
     turns, slips = np.abs(motion.turn), np.abs(motion.slip)
     if least is None:
-        least = ACTIVE * max(float(turns.max()), float(slips.max()))
+        least = ACTIVE * max(float(turns.max(initial=0.0)), float(slips.max(initial=0.0)))
     observed: list[ObservedJoint] = []
     every = (joints.tangent, joints.length, joints.is_corner, motion.gap, turns, slips)
     for index, (tangent, length, is_corner, opening, turn, slip) in enumerate(
         zip(*(each.tolist() for each in every), strict=True)
     ):
         slides = slip > least > 0
-        state = JointState.SLIDES if slides else JointState.CLOSED
+        state = JointState.of(inner=False, outer=False, slides=slides)
         if is_corner:
             # How far it can slip on its face.
             far = slip > _left_to_slip(assembly, index, float(motion.slip[index]))
@@ -227,7 +221,10 @@ def classify(
         elif min(opening) > LEFT or slip > length:
             state = JointState.OPEN
         elif turn > least > 0:
-            state = _turning(opening, turn * length, slides=slides)
+            parted, inner = min(opening) > PARTED * turn * length, opening[0] >= opening[1]
+            state = JointState.of(
+                inner=parted or inner, outer=parted or not inner, slides=slides
+            )
         observed.append(ObservedJoint(angle=math.atan2(*tangent), state=state))
     return tuple(observed)
 
@@ -240,17 +237,6 @@ def _left_to_slip(assembly: Assembly, joint: int, slip: float) -> float:
     # The face moves where the block behind it is `after`.
     sense = slip if carrier == 0 else -slip
     return float(abs(ends[1] if sense > 0 else ends[0]))
-
-
-def _turning(opening: list[float], parted: float, *, slides: bool) -> JointState:
-    """State of a joint that turns: which end stays closed, and does it slip."""
-    if min(opening) > PARTED * parted:
-        return JointState.OPEN
-    if slides:
-        return JointState.HINGE_AND_SLIDES
-    if opening[0] < opening[1]:
-        return JointState.HINGE_INTRADOS
-    return JointState.HINGE_EXTRADOS
 
 
 def joint_names(assembly: Assembly | SpatialAssembly) -> list[str]:

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from blocksim.blocks.acting import Load
-from blocksim.blocks.assembly import Array
+from blocksim.blocks.assembly import Array, Blocks
 from blocksim.blocks.entries import Around, BlockEntry, Id, JointEntry, LoadEntry
 from blocksim.blocks.patch import Profile
 from blocksim.blocks.polygons import Body
+from blocksim.blocks.problem import Problem
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from blocksim.blocks.space.files import (
         FaceEntry,
         SolidEntry,
-        SpatialFile,
+        SpatialAround,
         SpatialLoadEntry,
     )
 
@@ -181,18 +182,35 @@ def _keys(load: LoadEntry | SpatialLoadEntry) -> list[str]:
 class Acts(NamedTuple):
     """What acts on blocks, as a file says, and what is to be noted of it."""
 
+    written: Around | SpatialAround
     gravity: Array
     dead: tuple[Load, ...]
     live: tuple[Load, ...]
     notes: tuple[str, ...]
 
+    def on(self, assembly: Blocks, mu: float) -> Problem[Blocks]:
+        """Return the problem of blocks with a friction, under all of it."""
+        written = self.written
+        return Problem(
+            assembly=assembly,
+            mu=mu,
+            gravity=self.gravity,
+            dead=self.dead,
+            live=self.live,
+            load=float(written.load),
+            title=written.title,
+            source=written.source,
+            weighed=written.density is not None,
+            notes=(*written.notes, *self.notes),
+        )
 
-def acting_of(written: Around | SpatialFile, loads_of: LoadsOf, down: Array) -> Acts:
+
+def acting_of(written: Around | SpatialAround, loads_of: LoadsOf, down: Array) -> Acts:
     """Return gravity and loads; a body force on all blocks is gravity.
 
     Parameters
     ----------
-    written : Around or SpatialFile
+    written : Around or SpatialAround
     loads_of : LoadsOf
     down : (3,) float
         Gravity where the file says nothing of it.
@@ -213,4 +231,4 @@ def acting_of(written: Around | SpatialFile, loads_of: LoadsOf, down: Array) -> 
     live = [
         each for at, load in enumerate(written.live) for each in loads_of(load, f"live[{at}]")
     ]
-    return Acts(gravity, tuple(dead), tuple(live), notes)
+    return Acts(written, gravity, tuple(dead), tuple(live), notes)

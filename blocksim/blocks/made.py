@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic
 
-from blocksim.blocks.anyproblem import Blocks
+from blocksim.blocks.assembly import Blocks
 
 if TYPE_CHECKING:
     from blocksim.blocks.acting import Load

@@ -8,14 +8,12 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from types import MappingProxyType
-from typing import Any, ClassVar, Self, cast
+from typing import Any, ClassVar, Generic, Self, cast
 
-from blocksim.blocks.anyproblem import AnyProblem
-from blocksim.blocks.assembly import Assembly
+from blocksim.blocks.assembly import Assembly, Blocks
 from blocksim.blocks.made import Built, Made
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import (
@@ -25,7 +23,7 @@ from blocksim.common.checks import (
     Range,
     require,
 )
-from blocksim.common.errors import MISSING, InputError, perhaps
+from blocksim.common.errors import MISSING, InputError
 from blocksim.common.fields import Field, fields_of
 from blocksim.common.shown import Shown
 
@@ -49,7 +47,20 @@ def parameter(
     whole: bool = False,
     **known: Any,
 ) -> Any:
-    """Make a field of a kind: a number, but for `choices` and `nested`; see `Field`."""
+    """Make a field of a kind: a number, but for `choices` and `nested`; see `Field`.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> from blocksim.common.fields import fields_of
+    >>> @dataclass(frozen=True)
+    ... class Pile(Maker):
+    ...     width: float = metres(1.0, "of the base")
+    ...     stones: int = count(10, "in all", low=2)
+    ...     slope: float = parameter(0.5, "rise over run", high=2.0)
+    >>> [each.allowed for each in fields_of(Pile).values()]
+    ['1e-06 to 1e+06 m', 'a whole number from 2 to 1000', 'above 0 and at most 2']
+    """
     numbers = Range(low=low, high=high, unit=unit, above=above, whole=whole)
     is_number = not (known.get("choices") or known.get("nested"))
     said = Field(about=about, range=numbers if is_number else None, **known)
@@ -65,12 +76,12 @@ def metres(
     above: bool = False,
     **known: Any,
 ) -> Any:
-    """Make a field that is a length [m]."""
+    """Make a field that is a length [m]; see `parameter`."""
     return parameter(default, about, unit="m", low=low, high=high, above=above, **known)
 
 
 def count(default: int, about: str, *, low: int = 1, high: float = MOST, **known: Any) -> Any:
-    """Make a field that is a number of things."""
+    """Make a field that is a number of things; see `parameter`."""
     return parameter(default, about, whole=True, low=low, high=high, above=False, **known)
 
 
@@ -109,7 +120,7 @@ class Table:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Kind(Shown, Table, ABC):
+class Kind(Shown, Table, ABC, Generic[Blocks]):
     """What makers in the plane and in space are: a name, friction and density.
 
     Parameters
@@ -123,6 +134,7 @@ class Kind(Shown, Table, ABC):
     name: ClassVar[str]
     about: ClassVar[str] = ""
     is_arch: ClassVar[bool] = False
+    in_space: ClassVar[bool] = False
     row_types: ClassVar[Mapping[str, type[Table]]] = {}
 
     friction: float | None = None
@@ -149,7 +161,7 @@ class Kind(Shown, Table, ABC):
             If there is none.
         """
         if self.friction is None:
-            raise InputError("friction", MISSING, "given")
+            raise InputError("friction", MISSING, "given, for example 0.7")
         return self.friction
 
     @property
@@ -159,11 +171,10 @@ class Kind(Shown, Table, ABC):
 
     @cached_property
     @abstractmethod
-    def built(self) -> Built[Any]:
+    def built(self) -> Built[Blocks]:
         """The blocks, made once."""
 
-    @abstractmethod
-    def problem(self) -> AnyProblem[Any]:
+    def problem(self) -> Problem[Blocks]:
         """Return what is made, under its own weight and that of its fill.
 
         Raises
@@ -171,6 +182,16 @@ class Kind(Shown, Table, ABC):
         InputError
             If there is no friction, or nothing can be built of the parameters.
         """
+        mu, built = self.known_friction, self.built
+        return Problem(
+            assembly=built.assembly,
+            mu=mu,
+            dead=built.fills,
+            title=self.name,
+            maker=self,
+            weighed=self.density is not None,
+            notes=built.notes,
+        )
 
     def offers(self, problem: Any) -> Any:  # noqa: ARG002 - one of its own may
         """Return what it knows of its problem better than the general way; None for nothing.
@@ -208,21 +229,21 @@ class Kind(Shown, Table, ABC):
         for name, value in changes.items():
             here, _, rest = name.partition(".")
             require(here in given, name, value, f"one of {', '.join(given)}")
-            given[here] = cast(Kind, given[here]).but(**{rest: value}) if rest else value
+            given[here] = cast("Kind[Any]", given[here]).but(**{rest: value}) if rest else value
         return type(self)(**given)
 
     def number(self, name: str) -> tuple[Field, float, float]:
         """Return what is known of a number that may be bracketed over, and its range."""
         here, _, rest = name.partition(".")
         if rest:
-            return cast(Kind, getattr(self, here)).number(rest)
+            return cast("Kind[Any]", getattr(self, here)).number(rest)
         return fields_of(type(self))[here], *self.limits(here)
 
     def value(self, name: str) -> float:
         """Return the value of such a number."""
         here, _, rest = name.partition(".")
         if rest:
-            return cast(Kind, getattr(self, here)).value(rest)
+            return cast("Kind[Any]", getattr(self, here)).value(rest)
         return float(getattr(self, here))
 
     @property
@@ -238,7 +259,7 @@ class Kind(Shown, Table, ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Maker(Kind):
+class Maker(Kind[Assembly]):
     """What makes a problem of its parameters.
 
     A class of one's own has a `name`, parameters, and `made`.
@@ -270,19 +291,6 @@ class Maker(Kind):
             Weight per volume [N/m^3].
         """
 
-    def problem(self) -> Problem:
-        """Return what is made, under its own weight and that of its fill."""
-        mu, built = self.known_friction, self.built
-        return Problem(
-            assembly=built.assembly,
-            mu=mu,
-            dead=built.fills,
-            title=self.name,
-            maker=self,
-            weighed=self.density is not None,
-            notes=built.notes,
-        )
-
     @cached_property
     def built(self) -> Built[Assembly]:
         """The blocks, made once."""
@@ -302,75 +310,3 @@ def _plain(value: object) -> object:
     if isinstance(value, tuple):
         return [_plain(each) for each in cast("tuple[object, ...]", value)]
     return value
-
-
-def kind_of(
-    written: Mapping[str, Any],
-    kinds: Sequence[type[Maker]],
-    path: str = "",
-    forces: Mapping[str, float | None] = MappingProxyType({}),
-) -> Maker:
-    """Read a kind from a table.
-
-    Parameters
-    ----------
-    written : mapping
-        `kind`, and parameters.
-    kinds : sequence of types
-        Those there are.
-    path : str
-        What leads to the table, for messages: `arch.`.
-    forces : mapping of str to float
-        Friction and density, which stand beside the parameters.
-
-    Raises
-    ------
-    InputError
-        In one line: no such kind or parameter, or a value out of range.
-    """
-    named = written.get("kind")
-    known = {each.name: each for each in kinds}
-    allowed = f"one of {', '.join(known)}"
-    if not isinstance(named, str) or named not in known:
-        near = perhaps(named, known) if isinstance(named, str) else ""
-        raise InputError(f"{path}kind", named, allowed + near)
-    chosen = known[named]
-    given = {key: value for key, value in written.items() if key != "kind"}
-    return cast(Maker, _table_of(chosen, given, kinds, path, f"a {named} has", forces))
-
-
-def _table_of(
-    chosen: type[Table],
-    written: Mapping[str, Any],
-    kinds: Sequence[type[Maker]],
-    path: str,
-    has: str,
-    forces: Mapping[str, float | None] = MappingProxyType({}),
-) -> Table:
-    parameters = fields_of(chosen)
-    given: dict[str, Any] = {}
-    for key, value in written.items():
-        known = parameters.get(key)
-        if known is None:
-            raise InputError(f"{path}{key}", value, f"left out: {has} {', '.join(parameters)}")
-        where = f"{path}{key}"
-        given[key] = value
-        if known.nested == "table":
-            require(isinstance(value, Mapping), where, value, known.allowed)
-            arches = [each for each in kinds if each.is_arch]
-            usual = {"kind": getattr(chosen, key).name}
-            table = {**usual, **cast("Mapping[str, Any]", value)}
-            given[key] = kind_of(table, arches, f"{where}.")
-        elif known.nested == "tables":
-            require(isinstance(value, list | tuple), where, value, known.allowed)
-            row = cast("type[Maker]", chosen).row_types[key]
-            tables: list[Table] = []
-            for at, each in enumerate(cast("Sequence[Any]", value)):
-                require(isinstance(each, Mapping), f"{where}[{at}]", each, "a table")
-                each = cast("Mapping[str, Any]", each)
-                tables.append(_table_of(row, each, kinds, f"{where}[{at}].", "it has"))
-            given[key] = tuple(tables)
-    try:
-        return chosen(**given, **forces)
-    except InputError as error:
-        raise InputError(f"{path}{error.field}", error.value, error.allowed) from None

@@ -8,13 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from blocksim.blocks.assembly import Array
+from blocksim.blocks.block import Array
 
 Index = NDArray[np.int64]
 STRAIGHT = 1e-3
 """A corner is straight if it is off its neighbours' line by this share of the tolerance."""
+EPS = np.finfo(float).eps
 MOST_DECIMALS = 12
 """Of numbers that are taken for rounded ones."""
+POWERS = np.array([10.0**decimals for decimals in range(MOST_DECIMALS + 1)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,13 +50,28 @@ def before(corners: Array) -> Array:
 
 def step_of(values: Array) -> float:
     """Return the step to which numbers are rounded, by their decimals; 0 if they have many."""
-    for decimals in range(MOST_DECIMALS + 1):
-        with np.errstate(over="ignore", invalid="ignore"):
-            scaled = values * 10.0**decimals
-            off = np.abs(scaled - np.round(scaled))
-            if (off <= 8 * np.finfo(float).eps * np.abs(scaled)).all():
+    if not len(values):
+        return 1.0
+    one, decimals = values[:1], 0
+    with np.errstate(over="ignore", invalid="ignore"):
+        while decimals <= MOST_DECIMALS:
+            # One number that needs more decimals is enough: how many it needs is asked at once.
+            own = np.flatnonzero(_fits(one, POWERS[decimals:]))
+            if not len(own):
+                return 0.0
+            decimals += int(own[0])
+            fits = _fits(values, POWERS[decimals])
+            if fits.all():
                 return 10.0**-decimals
+            one, decimals = values[~fits][:1], decimals + 1
     return 0.0
+
+
+def _fits(values: Array, power: Array) -> NDArray[np.bool_]:
+    """Tell which numbers are whole, times a power of ten."""
+    scaled = values * power
+    # Not to be compared is what overflows.
+    return np.abs(scaled - np.round(scaled)) <= 8 * EPS * np.abs(scaled)
 
 
 def signed_area(vertices: Array) -> float:

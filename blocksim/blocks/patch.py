@@ -142,22 +142,40 @@ class Profile:
         point : (parts, 2) float
             [m]
         """
+        share, point = self.spread(np.array([x]), dispersal)
+        links = np.flatnonzero(share[0])
+        return self.owner[links], share[0, links], point[0, links]
+
+    def spread(self, places: Array, dispersal: Dispersal) -> tuple[Array, Array]:
+        """Find what each link of the chain bears of loads on the road at places [m].
+
+        Parameters
+        ----------
+        places : (k,) float
+        dispersal : Dispersal
+
+        Returns
+        -------
+        share : (k, links) float
+        point : (k, links, 2) float
+            [m]; of no meaning where the share is 0.
+        """
         chain, most = self.ends.reshape(-1, 2), dispersal.slope
-        seen = (chain[:, 0] - x) / np.maximum(dispersal.road - chain[:, 1], LEAST)
+        depth = dispersal.road - chain[:, 1]
+        seen = (chain[:, 0] - places[:, None]) / np.maximum(depth, LEAST)
         # What lies behind something nearer is hidden: rays go on only past what they missed.
-        right = np.maximum.accumulate(np.clip(seen, 0.0, most))
-        left = np.minimum.accumulate(np.clip(seen, -most, 0.0)[::-1])[::-1]
+        right = np.maximum.accumulate(seen.clip(0.0, most), axis=1)
+        left = np.minimum.accumulate(seen.clip(-most, 0.0)[:, ::-1], axis=1)[:, ::-1]
         slopes = left + right
-        links = np.flatnonzero((np.diff(slopes) > LEAST * most) & (self.owner >= 0))
-        rays, weights = dispersal.rays(slopes[links, None], slopes[links + 1, None])
-        share = weights.sum(axis=1)
-        one = chain[links]
-        across, up = (chain[links + 1] - one).T[:, :, None]
-        depth = dispersal.road - one[:, 1:]
-        along = (x + rays * depth - one[:, :1]) / (across + rays * up)
-        mean = (weights * along).sum(axis=1) / share
-        point = one + mean[:, None] * (chain[links + 1] - one)
-        return self.owner[links], share, point
+        met = (np.diff(slopes) > LEAST * most) & (self.owner >= 0)
+        rays, weights = dispersal.rays(slopes[:, :-1, None], slopes[:, 1:, None])
+        share = np.where(met, weights.sum(axis=-1), 0.0)
+        way = np.diff(chain, axis=0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            far = places[:, None, None] + rays * depth[:-1, None] - chain[:-1, :1]
+            along = far / (way[:, :1] + rays * way[:, 1:])
+            mean = np.where(met, (weights * along).sum(axis=-1) / share, 0.0)
+        return share, chain[:-1] + mean[..., None] * way
 
     @cached_property
     def owner(self) -> NDArray[np.int64]:

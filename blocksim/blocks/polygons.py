@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint, Support
 from blocksim.blocks.given import Body as Body
 from blocksim.blocks.given import GivenJoint, as_given
-from blocksim.blocks.outlines import Extents, extents, moments, step_of
-from blocksim.blocks.problem import STANDARD_GRAVITY
+from blocksim.blocks.outlines import Extents, extents, step_of
 from blocksim.blocks.regions import hull, near_faces, overlaps
+from blocksim.blocks.rows import Rows
 from blocksim.blocks.shapes import Shape, finite, name_of, shapes_of
 from blocksim.blocks.touching import Slack, Touch, faces_of_polygons, merged, touches
-from blocksim.common.checks import require
+from blocksim.common.checks import COORDINATE, INERTIA, LENGTH, MASS, require
 from blocksim.common.errors import InputError
 from blocksim.common.words import counted
 
@@ -90,8 +88,7 @@ def assembly_of_bodies(
     ----------
     bodies : sequence of Body
     joints : sequence of GivenJoint, optional
-        Taken as they are; by default found: faces that lie on each other, and corners that
-        rest on a face (see `touching.touches`).
+        Taken as they are; by default found (see `touching.touches`).
     density : float
         Weight per volume [N/m^3] of bodies without a weight.
     size : float, optional
@@ -112,11 +109,10 @@ def assembly_of_bodies(
     Raises
     ------
     InputError
-        In one line, naming the blocks: fewer than three corners, a polygon that crosses
-        itself, a weight not above zero, an overlap, a block that nothing holds.
+        Naming the blocks: a polygon of two corners or that crosses itself, a weight not
+        above zero, an overlap, a block that nothing holds.
     """
-    raw, size = _sound(bodies, size)
-    notes: list[str] = []
+    (raw, size), notes = _sound(bodies, size), list[str]()
     if rounding is None:
         rounding = step_of(np.concatenate([each.ravel() for of in raw for each in of]))
     measured = extents(raw)
@@ -125,28 +121,18 @@ def assembly_of_bodies(
     slack = _slack(measured, exact, fixed_ones, rounding, tolerance)
     shapes = shapes_of(raw, bodies, exact, notes)
     if joints is None:
-        _require_apart(shapes, bodies, fixed_ones, slack)
         found = [(touch, None) for touch in _found(shapes, bodies, slack, notes)]
         notes += _said(found, bodies, slack, rounding, tolerance)
     else:
-        deep = overlaps([shape.parts for shape in shapes], fixed_ones, slack, SHOWN)
-        if deep:
-            pairs = [(one, other) for one, other, _ in deep]
-            notes.append(f"overlaps taken, as joints are given: {_pairs(bodies, pairs)}")
-        outlines = [shape.outlines for shape in shapes]
-        names = [name_of(bodies, index) for index in range(len(bodies))]
-        found = as_given(joints, outlines, names, exact / TOLERANCE, TOLERANCE, notes)
-        notes.append(f"{counted(len(found), 'joint')} as given")
-    _require_held([touch for touch, _ in found], bodies)
+        found = _taken(joints, shapes, bodies, slack, exact, notes)
+    _require_held(found, bodies)
     moving, fixed = np.flatnonzero(~fixed_ones).tolist(), np.flatnonzero(fixed_ones).tolist()
-    blocks = tuple(_block(bodies[index], shapes[index], index, density) for index in moving)
-    place = {index: at for at, index in enumerate(moving)}
-    bed = {index: at for at, index in enumerate(fixed)}
+    blocks = _blocks(bodies, shapes, moving, density)
     supports = tuple(Support(shapes[index].parts, bodies[index].name) for index in fixed)
-    made = [_joint(touch, own, place, bed) for touch, own in found]
-    if joints is None:
-        made.sort(key=_order)
-    return Assembly(blocks, tuple(made), size, supports), tuple(notes)
+    made = _joints(found, moving, fixed)
+    # Those found lead from `before` to `after`: none has to be made to be turned.
+    every = made if joints is None else tuple(made)
+    return Assembly(blocks, every, size, supports), tuple(notes)
 
 
 def _sound(bodies: Sequence[Body], size: float | None) -> tuple[list[tuple[Array, ...]], float]:
@@ -163,13 +149,10 @@ def _sound(bodies: Sequence[Body], size: float | None) -> tuple[list[tuple[Array
     size = float(np.ptp(points, axis=0).max()) / 2 if size is None else size
     require(size > 0, "blocks", "no extent", "polygons with an area")
     farthest = max(float(np.abs(polygon).max()) for polygons in raw for polygon in polygons)
-    require(
-        farthest * _ROUNDING <= TOLERANCE * size,
-        "blocks",
-        f"coordinates up to {farthest:g} m",
-        f"below {TOLERANCE * size / _ROUNDING:.3g} m for this size: "
-        "move the drawing to its origin",
-    )
+    said, most = f"coordinates up to {farthest:g} m", TOLERANCE * size / _ROUNDING
+    require(COORDINATE.has(farthest), "blocks", said, COORDINATE.words)
+    allowed = f"below {most:.3g} m for this size: move the drawing to its origin"
+    require(farthest <= most, "blocks", said, allowed)
     return raw, size
 
 
@@ -186,9 +169,25 @@ def _require_apart(
         )
 
 
-def _order(joint: Joint) -> tuple[int, int, int]:
-    """Order found joints: by the blocks before and after, and by their support."""
-    return joint.before, joint.after, -1 if joint.support is None else joint.support
+def _taken(
+    joints: Sequence[GivenJoint],
+    shapes: Sequence[Shape],
+    bodies: Sequence[Body],
+    slack: Slack,
+    exact: Array,
+    notes: list[str],
+) -> list[tuple[Touch, float | None]]:
+    """Return joints as they are given, each with its own friction."""
+    fixed = np.array([body.fixed for body in bodies])
+    deep = overlaps([shape.parts for shape in shapes], fixed, slack, SHOWN)
+    if deep:
+        pairs = [(one, other) for one, other, _ in deep]
+        notes.append(f"overlaps taken, as joints are given: {_pairs(bodies, pairs)}")
+    outlines = [shape.outlines for shape in shapes]
+    names = [name_of(bodies, index) for index in range(len(bodies))]
+    found = as_given(joints, outlines, names, exact / TOLERANCE, TOLERANCE, notes)
+    notes.append(f"{counted(len(found), 'joint')} as given")
+    return found
 
 
 def _slack(
@@ -242,10 +241,11 @@ def _found(
     shapes: Sequence[Shape], bodies: Sequence[Body], slack: Slack, notes: list[str]
 ) -> list[Touch]:
     """Find where bodies touch, in a fixed order and sense."""
+    fixed = np.array([body.fixed for body in bodies])
+    _require_apart(shapes, bodies, fixed, slack)
     outlines = [outline for shape in shapes for outline in shape.outlines]
     owner = [index for index, shape in enumerate(shapes) for _ in shape.outlines]
     faces = faces_of_polygons(outlines, owner)
-    fixed = np.array([body.fixed for body in bodies])
     found, near = touches(faces, near_faces(faces, fixed, slack), slack)
     if any(len(shape.outlines) > 1 for shape in shapes):
         found = merged(found, slack)
@@ -255,8 +255,11 @@ def _found(
         after = (not bodies[touch.other].fixed, touch.other)
         return touch if before < after else touch.turned()
 
-    found = [sense(touch) for touch in found]
-    found.sort(key=lambda touch: (touch.one, touch.other, *touch.ends.ravel().tolist()))
+    def order(touch: Touch) -> tuple[float, ...]:
+        before = SUPPORT if bodies[touch.one].fixed else touch.one
+        return before, touch.other, touch.one, *touch.ends.ravel().tolist()
+
+    found = sorted((sense(touch) for touch in found), key=order)
     if near:
         one, other = np.array(near).T
         here = slack.at(one, other)
@@ -275,56 +278,65 @@ def _pairs(bodies: Sequence[Body], pairs: Sequence[tuple[int, int]]) -> str:
     return "blocks " + ", ".join(shown[:SHOWN]) + more
 
 
-def _require_held(found: Sequence[Touch], bodies: Sequence[Body]) -> None:
-    """Check that joints lead from every block to a fixed one."""
-    count = len(bodies)
-    one = np.array([touch.one for touch in found], dtype=np.int64)
-    other = np.array([touch.other for touch in found], dtype=np.int64)
-    graph = coo_array((np.ones(len(found)), (one, other)), shape=(count, count))
-    _, group = cast(tuple[int, Any], connected_components(graph, directed=False))
-    fixed = np.array([body.fixed for body in bodies])
-    loose = np.flatnonzero(~np.isin(group, group[fixed]))
-    if len(loose):
+def _require_held(found: Sequence[tuple[Touch, object]], bodies: Sequence[Body]) -> None:
+    """Check that joints lead from every block to a fixed one, or one that is free."""
+    leads = list(range(len(bodies)))
+
+    def root(index: int) -> int:
+        while leads[index] != index:
+            leads[index] = leads[leads[index]]
+            index = leads[index]
+        return index
+
+    for touch, _ in found:
+        leads[root(touch.one)] = root(touch.other)
+    held = {root(index) for index, body in enumerate(bodies) if body.fixed or body.free}
+    loose = next((index for index in range(len(bodies)) if root(index) not in held), None)
+    if loose is not None:
         raise InputError(
-            f"block {name_of(bodies, int(loose[0]))}",
+            f"block {name_of(bodies, loose)}",
             "held by nothing",
-            "joined to a fixed block, directly or by others: close the gap or give its joints",
+            "joined to a fixed block, directly or by others: close the gap, give its joints, "
+            "or say that it is free",
         )
 
 
-def _block(body: Body, shape: Shape, index: int, density: float) -> Block:
-    measured = moments(shape.parts)
-    weight = density * measured.area * body.depth if body.weight is None else body.weight
-    field = f"blocks[{index}]"
-    require(0 < weight < np.inf, f"{field}.weight", weight, "above 0")
-    require(0 < body.depth < np.inf, f"{field}.depth", body.depth, "above 0")
-    mass = weight / STANDARD_GRAVITY
-    inertia = mass * measured.polar / measured.area if body.inertia is None else body.inertia
-    require(0 < inertia < np.inf, f"{field}.inertia", inertia, "above 0")
-    centre = measured.centroid if body.centre is None else np.array(body.centre, dtype=float)
-    require(
-        centre.shape == (2,) and bool(np.isfinite(centre).all()),
-        f"{field}.centre",
-        body.centre,
-        "two finite numbers",
-    )
-    if len(shape.parts) == 1:
-        return Block(shape.parts[0], centre, mass, inertia, body.depth, body.name)
-    return Block(hull(shape.parts), centre, mass, inertia, body.depth, body.name, shape.parts)
+def _blocks(
+    bodies: Sequence[Body], shapes: Sequence[Shape], moving: Sequence[int], density: float
+) -> Rows[Block]:
+    """Return the blocks that move, those of numbers out of range made: they are refused."""
+    made: list[dict[str, Any]] = []
+    for at in moving:
+        parts, one = shapes[at].parts, len(shapes[at].parts) == 1
+        corners = {"vertices": parts[0] if one else hull(parts), "parts": () if one else parts}
+        made.append({**corners, **bodies[at].measured(parts, at, density)})
+    blocks = Rows(Block, **{name: [each[name] for each in made] for name in made[0]})
+    for at, each in enumerate(made):
+        numbers = MASS.has(each["mass"]) and INERTIA.has(each["inertia"])
+        if not (numbers and LENGTH.has(each["depth"])):
+            _ = blocks[at]
+    return blocks
 
 
-def _joint(
-    touch: Touch, friction: float | None, place: dict[int, int], bed: dict[int, int]
-) -> Joint:
-    whole = bool((touch.faces == touch.ends).all())
-    return Joint(
-        place.get(touch.one, SUPPORT),
-        place.get(touch.other, SUPPORT),
-        touch.ends[0],
-        touch.ends[1],
-        friction,
-        touch.normal,
-        None if whole else touch.faces,
-        bed.get(touch.one, bed.get(touch.other)),
-        touch.gap,
+def _joints(
+    found: Sequence[tuple[Touch, float | None]], moving: Sequence[int], fixed: Sequence[int]
+) -> Rows[Joint]:
+    """Return joints where bodies touch, with blocks and supports by their own numbers."""
+    touching = [touch for touch, _ in found]
+    place = dict.fromkeys(fixed, SUPPORT) | {index: at for at, index in enumerate(moving)}
+    bed = {index: at for at, index in enumerate(fixed)}
+    ends = np.reshape([touch.ends for touch in touching], (-1, 2, 2))
+    return Rows(
+        Joint,
+        before=[place[touch.one] for touch in touching],
+        after=[place[touch.other] for touch in touching],
+        inner=ends[:, 0],
+        outer=ends[:, 1],
+        friction=[own for _, own in found],
+        across=[touch.normal for touch in touching],
+        faces=[
+            None if (touch.faces == touch.ends).all() else touch.faces for touch in touching
+        ],
+        support=[bed.get(touch.one, bed.get(touch.other)) for touch in touching],
+        gap=[touch.gap for touch in touching],
     )

@@ -13,15 +13,22 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint, Support
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint, Support
 from blocksim.blocks.dispersal import Dispersal
 from blocksim.blocks.problem import Load, Move, Problem
 from blocksim.blocks.shaking import Shaking, table_of
 from blocksim.blocks.soil import Soil
+from blocksim.blocks.space.assembly import FaceJoint, SolidBlock, SpatialAssembly
+from blocksim.blocks.space.polyhedron import Polyhedron
 from blocksim.common.checks import COORDINATE, SMOOTH_OR_ROUGH
 
 if TYPE_CHECKING:
-    from blocksim.blocks.maker import Maker
+    from blocksim.blocks.maker import Kind
+
+
+NOT_WRITTEN = {"maker", "road"}
+"""Fields of a problem that its record says otherwise."""
+NO_BLOCKS = "no assembly of blocks"
 
 
 def to_record(value: object) -> Any:
@@ -30,7 +37,7 @@ def to_record(value: object) -> Any:
     Infinity, which JSON has not, is the string ``inf``.
     """
     if isinstance(value, Problem):
-        return _problem(value)
+        return _problem(cast("Problem[Any]", value))
     if is_dataclass(value):
         return {each.name: to_record(getattr(value, each.name)) for each in fields(value)}
     if isinstance(value, np.ndarray):
@@ -45,9 +52,10 @@ def to_record(value: object) -> Any:
     return value
 
 
-def _problem(problem: Problem) -> dict[str, Any]:
+def _problem(problem: Problem[Any]) -> dict[str, Any]:
     """Return a problem; of its maker the parameters, and where they stand loads on the road."""
-    names = [each.name for each in fields(problem) if each.name not in {"maker", "road"}]
+    left_out = NOT_WRITTEN if problem.in_space else {*NOT_WRITTEN, "azimuth"}
+    names = [each.name for each in fields(problem) if each.name not in left_out]
     maker = problem.maker
     origin: dict[str, Any] = {} if maker is None else to_record(maker.origin())
     if problem.road:
@@ -57,8 +65,8 @@ def _problem(problem: Problem) -> dict[str, Any]:
 
 def from_record(
     record: Mapping[str, Any],
-    maker_of: Callable[[Mapping[str, object]], Maker | None] = lambda _: None,
-) -> Problem:
+    maker_of: Callable[[Mapping[str, object]], Kind[Any] | None] = lambda _: None,
+) -> Problem[Any]:
     """Return the problem that `to_record` was given.
 
     Parameters
@@ -74,13 +82,8 @@ def from_record(
     """
     given = dict(record)
     built = dict(given.pop("assembly"))
-    assembly = Assembly(
-        blocks=tuple(_block(each) for each in built["blocks"]),
-        joints=tuple(_joint(each) for each in built["joints"]),
-        size=float(built["size"]),
-        supports=tuple(Support(**each) for each in built["supports"]),
-    )
-    _require_sound(assembly)
+    # In space the size follows from the blocks.
+    assembly = _in_plane(built) if "size" in built else _in_space(built)
     dead, live = (tuple(_load(each) for each in given.pop(name)) for name in ("dead", "live"))
     moves = tuple(Move(**each) for each in given.pop("moves"))
     on = [each for load in (*dead, *live) for each in load.blocks]
@@ -112,6 +115,67 @@ def from_record(
     )
 
 
+def _in_plane(built: dict[str, Any]) -> Assembly:
+    assembly = Assembly(
+        blocks=tuple(_block(each) for each in built["blocks"]),
+        joints=tuple(_joint(each) for each in built["joints"]),
+        size=float(built["size"]),
+        supports=tuple(Support(**each) for each in built["supports"]),
+    )
+    blocks = assembly.blocks
+    numbers = [assembly.size]
+    for block in blocks:
+        numbers += [block.mass, block.inertia, block.depth]
+    points = [block.centre for block in blocks]
+    points += [part for each in (*blocks, *assembly.supports) for part in each.polygons]
+    for joint in assembly.joints:
+        given = (joint.inner, joint.outer, joint.across, joint.faces)
+        points += [each for each in given if each is not None]
+    _require_sound(assembly, numbers, points)
+    return assembly
+
+
+def _in_space(built: dict[str, Any]) -> SpatialAssembly:
+    solids = [dict(each) for name in ("blocks", "supports") for each in built[name]]
+    corners = [_points(part["corners"]) for each in solids for part in each["hulls"]]
+    _require_near(corners)
+    made = [_solid(each) for each in solids]
+    count = len(built["blocks"])
+    assembly = SpatialAssembly(
+        blocks=tuple(made[:count]),
+        supports=tuple(made[count:]),
+        joints=tuple(_face(each) for each in built["joints"]),
+    )
+    points = [block.centre for block in made]
+    for joint in assembly.joints:
+        points += [joint.points, joint.normal]
+    _require_sound(assembly, [each.weight for each in assembly.blocks], points)
+    normals = np.array([each.normal for each in assembly.joints]).reshape(-1, 3)
+    if not np.allclose(np.linalg.norm(normals, axis=1), 1.0):
+        raise ValueError(NO_BLOCKS)
+    return assembly
+
+
+def _solid(record: dict[str, Any]) -> SolidBlock:
+    hulls = tuple(Polyhedron(each["corners"], float(each["slack"])) for each in record["hulls"])
+    given: dict[str, Any] = {**record, "hulls": hulls, "name": str(record["name"])}
+    return SolidBlock(**{**given, "centre": _points([record["centre"]])[0]})
+
+
+def _face(record: dict[str, Any]) -> FaceJoint:
+    given: dict[str, Any] = {**_numbers(record), "points": _points(record["points"])}
+    return FaceJoint(**{**given, "normal": _points([record["normal"]])[0]})
+
+
+def _points(record: Any) -> Array:
+    """Return points in space, (k, 3), at least one."""
+    found = np.array(record, dtype=float)
+    if found.ndim != 2 or found.shape[1] != 3 or not len(found):
+        message = "no points"
+        raise ValueError(message)
+    return found
+
+
 def _block(record: dict[str, Any]) -> Block:
     given: dict[str, Any] = {**record, "parts": tuple(record["parts"])}
     return Block(**given)
@@ -130,23 +194,22 @@ def _load(record: dict[str, Any]) -> Load:
 def _shaking(record: Mapping[str, Any] | None) -> Shaking | None:
     if record is None:
         return None
-    made = Shaking(**record)
-    if not len(made.table):
-        return made
-    # A stranger's table is checked as one of a file is.
-    times, values = made.table.T
-    table_of(times, values)
+    given = dict(record)
+    table = np.array(given.pop("table"), dtype=float)
+    if table.shape[1:] == (2,):
+        # Recordings of before know no motion upwards.
+        table = np.column_stack([table, np.zeros(len(table))])
+    made = Shaking(table=table.reshape(-1, 3), **given)
+    if len(table):
+        # A stranger's table is checked as one of a file is.
+        table_of(*table.T)
     return made
 
 
 def _soil(record: Mapping[str, Any] | None) -> Soil | None:
     if record is None:
         return None
-    tuples = {"regions", "layers", "backing", "pressure", "passive"}
-    given: dict[str, Any] = {
-        name: _tuples(each) if name in tuples else each for name, each in record.items()
-    }
-    return Soil(**given)
+    return Soil(**{name: _tuples(each) for name, each in record.items()})
 
 
 def _tuples(value: Any) -> Any:
@@ -157,38 +220,43 @@ def _numbers(record: Mapping[str, Any]) -> dict[str, object]:
     return {key: math.inf if value == "inf" else value for key, value in record.items()}
 
 
-def _sides(joint: Joint) -> tuple[object, object]:
-    return joint.before, joint.after
-
-
 def _is_place(value: object, count: int, least: int = 0) -> bool:
     """Whether a stranger names one of so many things by a whole number; true is none."""
     return type(value) is int and least <= value < count
 
 
-def _require_sound(assembly: Assembly) -> None:
-    """Raise `ValueError` where a stranger's record cannot be of blocks."""
+def _require_sound(
+    assembly: Assembly | SpatialAssembly, numbers: Sequence[float], points: Sequence[Array]
+) -> None:
+    """Raise `ValueError` where a stranger's record cannot be of blocks.
+
+    Parameters
+    ----------
+    assembly : Assembly or SpatialAssembly
+    numbers : sequence of float
+        What has to be above 0.
+    points : sequence of array
+        All that is somewhere.
+    """
     count, supports = len(assembly.blocks), len(assembly.supports)
-    numbers = [assembly.size]
-    for block in assembly.blocks:
-        numbers += [block.mass, block.inertia, block.depth]
     sound = count > 0 and all(math.isfinite(each) and each > 0 for each in numbers)
+    names: list[object] = [each.name for each in (*assembly.blocks, *assembly.supports)]
+    sound &= all(isinstance(each, str) for each in names)
     for joint in assembly.joints:
-        sound = sound and all(_is_place(each, count, SUPPORT) for each in _sides(joint))
+        sound = sound and all(
+            _is_place(each, count, SUPPORT) for each in (joint.before, joint.after)
+        )
         sound = sound and (joint.support is None or _is_place(joint.support, supports))
         own = joint.friction
         sound = sound and (own is None or SMOOTH_OR_ROUGH.has(own))
         sound = sound and (joint.gap == 0 or COORDINATE.has(joint.gap))
-    points = [block.centre for block in assembly.blocks]
-    points += [
-        part for each in (*assembly.blocks, *assembly.supports) for part in each.polygons
-    ]
-    for joint in assembly.joints:
-        given = (joint.inner, joint.outer, joint.across, joint.faces)
-        points += [each for each in given if each is not None]
+    if not sound:
+        raise ValueError(NO_BLOCKS)
+    _require_near(points)
+
+
+def _require_near(points: Sequence[Array]) -> None:
     far = np.abs(np.concatenate([each.ravel() for each in points]))
     # Not a number is not below anything.
-    sound = sound and bool((far <= COORDINATE.high).all())
-    if not sound:
-        message = "no assembly of blocks"
-        raise ValueError(message)
+    if not bool((far <= COORDINATE.high).all()):
+        raise ValueError(NO_BLOCKS)

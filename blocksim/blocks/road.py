@@ -9,12 +9,12 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from blocksim.blocks.acting import Load
-from blocksim.blocks.assembly import Array, Assembly
+from blocksim.blocks.assembly import Array, Assembly, Blocks
 from blocksim.blocks.dispersal import Dispersal, quadrature
 from blocksim.blocks.patch import Profile, Share
 from blocksim.blocks.soil import Soil
@@ -22,6 +22,7 @@ from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 
 if TYPE_CHECKING:
+    from blocksim.blocks.maker import Kind
     from blocksim.blocks.problem import Problem
 
 
@@ -108,11 +109,9 @@ def loads_of(shares: Sequence[Share], weight: float, count: int) -> tuple[Load, 
 
 def road_of(problem: Problem) -> float | None:
     """Return the height of the road over a structure [m]; None where it has no fill."""
-    maker: Any = problem.maker
-    arch = getattr(maker, "arch", maker)
-    height = getattr(arch, "fill", None)
-    if height is not None:
-        return getattr(maker, "road", arch.top + height)
+    arch = _filled(problem)
+    if arch is not None and arch.fill is not None:
+        return getattr(problem.maker, "road", arch.top + arch.fill)
     if problem.soil is None or problem.soil.height is None:
         return None
     return float(profile_of(problem.assembly).ends[:, :, 1].max()) + problem.soil.height
@@ -150,16 +149,20 @@ def with_road(
     return replace(problem, live=tuple(live), road=tuple(loads))
 
 
+def _filled(problem: Problem) -> Any:
+    """Return the maker that knows its fill: an arch, or that of arches on piers; else None."""
+    arch = getattr(problem.maker, "arch", problem.maker)
+    return arch if hasattr(arch, "fill") else None
+
+
 def takes_fill(problem: Problem) -> bool:
     """Tell whether a maker knows its fill: those of an arch, or of arches on piers."""
-    maker: Any = problem.maker
-    return hasattr(maker, "fill") or hasattr(getattr(maker, "arch", None), "fill")
+    return _filled(problem) is not None
 
 
 def fill_density(problem: Problem) -> float:
     """Return the density of the fill that a maker knows, over that of its blocks."""
-    maker: Any = problem.maker
-    return float(getattr(maker, "arch", maker).fill_density)
+    return float(_filled(problem).fill_density)
 
 
 def with_fill(problem: Problem, height: float, share: float) -> Problem:
@@ -181,9 +184,31 @@ def with_fill(problem: Problem, height: float, share: float) -> Problem:
     """
     maker: Any = problem.maker
     require(takes_fill(problem), "fill", height, "left out: it is for arches and portals")
-    path = "" if hasattr(maker, "fill") else "arch."
+    path = "" if _filled(problem) is maker else "arch."
     filled = maker.but(**{f"{path}fill": height, f"{path}fill_density": share})
-    return problem.remade(filled)
+    return remade(problem, filled)
+
+
+def remade(problem: Problem[Blocks], maker: Kind[Any]) -> Problem[Blocks]:
+    """Return a problem by another maker, or by one with other parameters.
+
+    Loads stay as they are but for the weight of fill, which comes first among the dead ones.
+    What is on the road stays where it is.
+    """
+    if problem.soil is not None:
+        plain = remade(with_soil(cast("Problem", problem), None), maker)
+        return cast("Problem[Blocks]", with_soil(plain, problem.soil))
+    before = 0 if problem.maker is None else len(problem.maker.built.fills)
+    built = maker.built
+    dead = (*built.fills, *problem.dead[before:])
+    made = replace(problem, assembly=built.assembly, dead=dead, maker=maker)
+    if problem.in_space:
+        return made
+    planar = cast("Problem", made)
+    if problem.dispersal is not None and (road := road_of(planar)) is not None:
+        planar = replace(planar, dispersal=replace(problem.dispersal, road=road))
+    found = with_road(planar, problem.road) if problem.road else planar
+    return cast("Problem[Blocks]", found)
 
 
 def with_soil(problem: Problem, soil: Soil | None) -> Problem:
@@ -194,10 +219,20 @@ def with_soil(problem: Problem, soil: Soil | None) -> Problem:
     InputError
         If there is no fill.
     """
-    fills = 0 if problem.maker is None else len(problem.maker.built.fills)
-    others = problem.dead[fills + len(soil_loads(problem)) :]
+    fills = _fills(problem)
+    others = problem.dead[fill_loads(problem) :]
     made = replace(problem, soil=soil)
     return replace(made, dead=(*problem.dead[:fills], *soil_loads(made), *others))
+
+
+def _fills(problem: Problem) -> int:
+    """Return how many loads are the weight of fill that a maker knows: the first ones."""
+    return 0 if problem.maker is None else len(problem.maker.built.fills)
+
+
+def fill_loads(problem: Problem) -> int:
+    """Return how many of the dead loads fill is, by weight and from the side: the first."""
+    return _fills(problem) + len(soil_loads(problem))
 
 
 def soil_loads(problem: Problem) -> tuple[Load, ...]:
@@ -251,16 +286,15 @@ class FillAbove:
 
 def fill_of(problem: Problem) -> FillAbove | None:
     """Return the fill on a structure; None where it has none."""
-    maker, soil = problem.maker, problem.soil
-    height: float | None = getattr(getattr(maker, "arch", maker), "fill", None)
+    maker, soil, arch = problem.maker, problem.soil, _filled(problem)
+    height: float | None = None if arch is None else arch.fill
     if height is None:
         height = None if soil is None else soil.height
     if height is None:
         return None
-    fills = () if maker is None else maker.made(maker.unit_weight).fills
-    down = -sum(float(load.force[1]) for load in soil_loads(problem))
+    fills = () if maker is None else maker.built.fills
     return FillAbove(
         height=height,
-        weight=sum(each.weight for each in fills) + down,
-        words=() if soil is None else tuple(soil.words),
+        weight=-sum(float(load.force[1]) for load in (*fills, *soil_loads(problem))),
+        words=() if soil is None else soil.words,
     )

@@ -1,6 +1,6 @@
 """Ground that shakes: its acceleration over time.
 
-Blocks are seen from the ground, which moves: it is as if gravity had a part across, against
+Blocks are seen from the ground, which moves: it is as if gravity had another part, against
 the acceleration. An engine takes the gain of the ground's velocity over each of its steps, so
 that a pulse may begin and end within one.
 """
@@ -11,7 +11,7 @@ import io
 import math
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice
 from typing import Any
@@ -40,11 +40,13 @@ MOST_ROWS, LARGEST_FILE, LONGEST_LINE = 1_000_000, 50_000_000, 200
 LATEST = 1e9
 """Largest number in a table, of either column."""
 COLUMNS = ("time_s", "acceleration_g")
+UPWARDS = "vertical_g"
+"""A third column, which may be left out."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Shaking:
-    """Horizontal acceleration of the ground over time, above 0 to the right.
+    """Acceleration of the ground over time: across, above 0 to the right, and upwards.
 
     It begins at rest, as the blocks are let go. After it the ground keeps its velocity.
 
@@ -53,12 +55,13 @@ class Shaking:
     shape : str
         Of `SHAPES`, or `table`.
     amplitude : float
-        Largest acceleration [g].
+        Largest acceleration across [g]; of ground that goes up and down only, upwards.
     duration : float
         [s]
-    table : (rows, 2) float
-        Times as shares of the duration, from 0 to 1, and accelerations in units of the
-        amplitude, with straight lines between; empty for other shapes.
+    table : (rows, 3) float
+        Times as shares of the duration, from 0 to 1, and accelerations across and upwards in
+        units of the amplitude, with straight lines between; empty for other shapes, which
+        are across.
 
     Raises
     ------
@@ -69,7 +72,7 @@ class Shaking:
     shape: str
     amplitude: float
     duration: float
-    table: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    table: Array = field(default_factory=lambda: np.zeros((0, 3)))
 
     def __post_init__(self) -> None:
         """Check the ranges."""
@@ -77,18 +80,27 @@ class Shaking:
         require(self.shape in known, "shake", self.shape, f"one of {', '.join(known)}")
         AMPLITUDE.require("amplitude", self.amplitude)
         DURATION.require("duration", self.duration)
-        object.__setattr__(self, "table", frozen(np.reshape(self.table, (-1, 2)), (-1, 2)))
+        object.__setattr__(self, "table", frozen(self.table, (-1, 3)))
 
-    def with_amplitude(self, amplitude: float) -> Shaking:
-        """Return the same with another largest acceleration [g]."""
-        return replace(self, amplitude=amplitude)
+    @property
+    def is_vertical(self) -> bool:
+        """Whether the ground goes up or down as well."""
+        return bool(self.table[:, 2].any())
 
-    def with_duration(self, duration: float) -> Shaking:
-        """Return the same, stretched or shortened in time [s]."""
-        return replace(self, duration=duration)
+    @property
+    def across(self) -> tuple[float, float]:
+        """Least and greatest acceleration across at any time, 0 among them [g]."""
+        if self.shape == TABLE:
+            shares = (0.0, *self.table[:, 1].tolist())
+        else:
+            shares = (-1.0, 1.0) if self.shape == "full-sine" else (0.0, 1.0)
+        return self.amplitude * min(shares), self.amplitude * max(shares)
 
-    def gained(self, start: float, end: float) -> float:
-        """Return by how much the ground's velocity grows between two times [s], in g s."""
+    def gained(self, start: float, end: float) -> Array:
+        """Return by how much the ground's velocity grows between two times [s], in g s.
+
+        Across and upwards, shape (2,).
+        """
         whole = self.amplitude * self.duration
         return whole * (self._by(end) - self._by(start))
 
@@ -101,30 +113,39 @@ class Shaking:
     def words(self) -> str:
         """All of it in a few words."""
         shape = "a record" if self.shape == TABLE else self.shape.replace("-", " ")
-        return f"ground shakes: {shape} of {self.amplitude:g} g for {self.duration:g} s"
+        upwards = ""
+        if self.is_vertical:
+            most = self.amplitude * float(np.abs(self.table[:, 2]).max())
+            upwards = f", up to {most:g} g upwards or down,"
+        return (
+            f"ground shakes: {shape} of {self.amplitude:g} g{upwards} for {self.duration:g} s"
+        )
 
-    def _by(self, time: float) -> float:
-        """Velocity gained since the start, over amplitude and duration."""
+    def _by(self, time: float) -> Array:
+        """Velocity gained since the start, over amplitude and duration, shape (2,)."""
         share = min(max(time / self.duration, 0.0), 1.0)
-        return self._along(share) if self.shape == TABLE else SHAPES[self.shape](share)
+        if self.shape == TABLE:
+            return self._along(share)
+        return np.array([SHAPES[self.shape](share), 0.0])
 
-    def _along(self, share: float) -> float:
-        times, values = self.table.T
+    def _along(self, share: float) -> Array:
+        times, values = self.table[:, 0], self.table[:, 1:]
         at = int(np.searchsorted(times, share, side="right")) - 1
         if at >= len(times) - 1:
-            return float(self._sums[-1])
+            return self._sums[-1]
         step, past = times[at + 1] - times[at], share - times[at]
         slope = (values[at + 1] - values[at]) / step
-        return float(self._sums[at] + past * (values[at] + slope * past / 2))
+        return self._sums[at] + past * (values[at] + slope * past / 2)
 
     @cached_property
     def _sums(self) -> Array:
-        times, values = self.table.T
+        times, values = self.table[:, 0], self.table[:, 1:]
         means = (values[1:] + values[:-1]) / 2
-        return np.concatenate([[0.0], np.cumsum(means * np.diff(times))])
+        gained = np.cumsum(means * np.diff(times)[:, None], axis=0)
+        return np.concatenate([np.zeros((1, 2)), gained])
 
 
-def table_of(times: Array, accelerations: Array) -> Shaking:
+def table_of(times: Array, accelerations: Array, upwards: Array | None = None) -> Shaking:
     """Make one of accelerations that are given over time.
 
     Parameters
@@ -132,7 +153,9 @@ def table_of(times: Array, accelerations: Array) -> Shaking:
     times : (rows,) float
         [s]; each after the one before. The first is when the blocks are let go.
     accelerations : (rows,) float
-        [g]
+        Across [g].
+    upwards : (rows,) float, optional
+        [g]; by default none.
 
     Raises
     ------
@@ -141,26 +164,26 @@ def table_of(times: Array, accelerations: Array) -> Shaking:
     """
     enough = 2 <= len(times) <= MOST_ROWS
     require(enough, "times_s", f"{len(times)} rows", f"2 to {MOST_ROWS} rows")
-    alike = len(times) == len(accelerations)
-    rows = f"{len(accelerations)} rows"
-    require(alike, "accelerations_g", rows, f"as many as times_s, {len(times)}")
-    known = np.isfinite(times).all() and np.isfinite(accelerations).all()
-    require(bool(known), "times_s", "not all are numbers", "finite numbers in every row")
-    largest = float(max(np.abs(times).max(), np.abs(accelerations).max()))
+    upwards = np.zeros(len(times)) if upwards is None else upwards
+    for name, values in (("accelerations_g", accelerations), ("verticals_g", upwards)):
+        alike, rows = len(times) == len(values), f"{len(values)} rows"
+        require(alike, name, rows, f"as many as times_s, {len(times)}")
+    rows = np.column_stack([times, accelerations, upwards])
+    finite = bool(np.isfinite(rows).all())
+    require(finite, "times_s", "not all are numbers", "finite numbers in every row")
+    largest = float(np.abs(rows).max())
     require(largest <= LATEST, "times_s", largest, f"numbers up to {LATEST:g}")
     grows = np.diff(times) > 0
     at = int(np.argmin(grows)) + 1
     later = "each later than the one before"
     require(bool(grows.all()), f"times_s[{at}]", float(times[at]), later)
-    amplitude = float(np.abs(accelerations).max())
-    values = accelerations / amplitude if amplitude else accelerations
-    shares = (times - times[0]) / (times[-1] - times[0])
-    return Shaking(
-        shape=TABLE,
-        amplitude=amplitude,
-        duration=float(times[-1] - times[0]),
-        table=np.column_stack([shares, values]),
-    )
+    across, up = np.abs(rows[:, 1:]).max(axis=0).tolist()
+    amplitude = across or up
+    if amplitude:
+        rows[:, 1:] /= amplitude
+    rows[:, 0] = (times - times[0]) / (times[-1] - times[0])
+    duration = float(times[-1] - times[0])
+    return Shaking(shape=TABLE, amplitude=amplitude, duration=duration, table=rows)
 
 
 def shaking_of(
@@ -170,6 +193,7 @@ def shaking_of(
     duration_s: float | None = None,
     times_s: Sequence[float] | None = None,
     accelerations_g: Sequence[float] | None = None,
+    verticals_g: Sequence[float] | None = None,
 ) -> Shaking:
     """Make what `shake` of a structure file says: a shape, or accelerations over time.
 
@@ -181,6 +205,9 @@ def shaking_of(
     pulse = {"shape": shape, "amplitude_g": amplitude_g, "duration_s": duration_s}
     table = {"times_s": times_s, "accelerations_g": accelerations_g}
     given, others = (table, pulse) if times_s is not None else (pulse, table)
+    if given is pulse or verticals_g is not None:
+        # It may be left out of a table.
+        table["verticals_g"] = verticals_g
     beside = "times_s" if given is table else "shape"
     for name, value in others.items():
         require(value is None, f"shake.{name}", "given", f"left out beside {beside}")
@@ -189,7 +216,7 @@ def shaking_of(
             raise InputError(f"shake.{name}", MISSING, "given")
     try:
         if given is table:
-            return table_of(np.array(times_s), np.array(accelerations_g))
+            return table_of(*(np.array(each, dtype=float) for each in table.values()))
         require(shape in SHAPES, "shape", shape, f"one of {', '.join(SHAPES)}")
         return Shaking(
             shape=str(shape), amplitude=amplitude_g or 0.0, duration=duration_s or 0.0
@@ -203,11 +230,14 @@ def shaking_of(
 def shaking_record(shaking: Shaking) -> dict[str, Any]:
     """Return the same as a structure file says it; `shaking_of` reads it back."""
     if shaking.shape == TABLE:
-        times, values = shaking.table.T
-        return {
+        times, across, upwards = shaking.table.T
+        record = {
             "times_s": (times * shaking.duration).tolist(),
-            "accelerations_g": (values * shaking.amplitude).tolist(),
+            "accelerations_g": (across * shaking.amplitude).tolist(),
         }
+        if shaking.is_vertical:
+            record["verticals_g"] = (upwards * shaking.amplitude).tolist()
+        return record
     return {
         "shape": shaking.shape,
         "amplitude_g": shaking.amplitude,
@@ -221,7 +251,7 @@ def read_table(path: AnyPath) -> Shaking:
     Parameters
     ----------
     path : Path or str
-        With a first line `time_s,acceleration_g`.
+        With a first line `time_s,acceleration_g`, or `time_s,acceleration_g,vertical_g`.
 
     Raises
     ------
@@ -234,13 +264,15 @@ def read_table(path: AnyPath) -> Shaking:
         # A spreadsheet may begin its files with a mark of their encoding.
         text = io.StringIO(read.decode("utf-8-sig"), newline=None)
         named = [name.strip() for name in next(text, "")[:200].split(",")]
-        right = named == list(COLUMNS)
-        require(right, "first line", ",".join(named), ",".join(COLUMNS))
+        wanted = list(COLUMNS) if len(named) <= len(COLUMNS) else [*COLUMNS, UPWARDS]
+        require(named == wanted, "first line", ",".join(named), ",".join(wanted))
         lines = list(islice(text, MOST_ROWS + 1))
         long = next((each for each in lines if len(each) > LONGEST_LINE), None)
         require(long is None, "line", (long or "")[:40], f"at most {LONGEST_LINE} letters")
-        rows = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.zeros((0, 2))
-        require(rows.shape[1] == len(COLUMNS), "columns", rows.shape[1], str(len(COLUMNS)))
+        rows = (
+            np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.zeros((0, len(wanted)))
+        )
+        require(rows.shape[1] == len(wanted), "columns", rows.shape[1], str(len(wanted)))
         return table_of(*rows.T)
     except InputError as error:
         raise InputError(error.field, error.value, error.allowed, where=where) from None

@@ -90,7 +90,7 @@ class Soil:
             require(not most or most > least, "fill_passive", f"{most:g}", allowed)
 
     @property
-    def words(self) -> list[str]:
+    def words(self) -> tuple[str, ...]:
         """What is said of it, beside its height and weight."""
         kilo = 1000.0
         said = [
@@ -104,7 +104,7 @@ class Soil:
             said.append(f"presses from the side by {_both(self.pressure)} of the weight above")
         if any(self.passive):
             said.append(f"bears up to {_both(self.passive)} of it where it is moved into")
-        return said
+        return tuple(said)
 
     def loads(self, profile: Profile, depths: Array, road: float) -> tuple[Load, ...]:
         """Return what soil does to blocks besides the weight that a maker counts.

@@ -6,22 +6,23 @@ Lengths in m, forces in N, y upwards. Its keys are those of `entries.StructureFi
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, replace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT, Assembly
-from blocksim.blocks.entries import Around, StructureFile, entries_of
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
+from blocksim.blocks.entries import Around, StructureFile
 from blocksim.blocks.given import GivenJoint
 from blocksim.blocks.loads import LoadsOf, Names, acting_of, name_of, sides_of
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import Body, assembly_of_bodies
-from blocksim.blocks.problem import DOWN, STANDARD_GRAVITY, Load, Move, Problem
+from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Move, Problem
 from blocksim.blocks.shaking import shaking_of, shaking_record
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
+from blocksim.common.tables import as_said
 
 
 def structure_of(data: object) -> Problem:
@@ -38,8 +39,7 @@ def structure_of(data: object) -> Problem:
         In one line: the first entry that is wrong, its value, and what would be accepted.
     """
     require(isinstance(data, dict), "structure", type(data).__name__, "a table of keys")
-    table = cast(dict[str, Any], data)
-    written = entries_of(table)
+    written = as_said(StructureFile, data)
     bodies = _bodies(written)
     joints = _joints(written, bodies)
     allowed = "left out: joints are given, none is found"
@@ -54,7 +54,23 @@ def structure_of(data: object) -> Problem:
         tolerance=written.tolerance,
         rounding=written.rounding,
     )
-    return problem_of(written, bodies, *found)
+    return replace(problem_of(written, bodies, *found), velocities=_velocities(written))
+
+
+def _velocities(written: StructureFile) -> Array:
+    """Return how blocks move at the release [m/s, rad/s]; empty where all are at rest."""
+    found: list[tuple[float, float, float]] = []
+    for at, block in enumerate(written.blocks):
+        moves = (*block.velocity, math.radians(block.spin_deg_s))
+        if not block.fixed:
+            found.append(moves)
+            continue
+        for name in ("velocity", "spin_deg_s"):
+            still = not np.any(getattr(block, name))
+            require(
+                still, f"blocks[{at}].{name}", getattr(block, name), "left out: it is fixed"
+            )
+    return np.array(found) if np.any(found) else np.zeros((0, 3))
 
 
 def _bodies(written: StructureFile) -> list[Body]:
@@ -71,6 +87,7 @@ def _bodies(written: StructureFile) -> list[Body]:
                 centre=block.centre,
                 inertia=block.inertia,
                 depth=block.depth,
+                free=block.free,
             )
         )
     return bodies
@@ -115,11 +132,28 @@ def problem_of(
     InputError
         In one line: a load on no block.
     """
-    fixed = [body.fixed for body in bodies]
-    body_of, loads_of = Names(bodies), LoadsOf(bodies)
+    acts = acting_of(written, LoadsOf(bodies), np.array(Assembly.down))
+    mu = written.friction
+    own = {joint.friction for joint in assembly.joints}
+    if len(own) == 1 and own != {None}:
+        # All joints have the same friction of their own: it is that of the structure.
+        mu = own.pop() or 0.0
+        joined = tuple(replace(joint, friction=None) for joint in assembly.joints)
+        assembly = replace(assembly, joints=joined)
+    return replace(
+        acts.on(assembly, mu),
+        moves=_moves(written, bodies),
+        shaking=None if written.shake is None else shaking_of(**asdict(written.shake)),
+        weighed=written.density is not None or all(map(_has_weight, bodies)),
+        notes=(*written.notes, *acts.notes, *found),
+    )
+
+
+def _moves(written: Around, bodies: Sequence[Body]) -> tuple[Move, ...]:
+    """Return how supports move."""
+    fixed, body_of = [body.fixed for body in bodies], Names(bodies)
     # Fixed blocks are numbered without those that move.
     bed = np.cumsum(fixed) - 1
-    acts = acting_of(written, loads_of, DOWN)
     moves: list[Move] = []
     for at, move in enumerate(written.move):
         place = body_of(move.block, f"move[{at}].block")
@@ -138,27 +172,7 @@ def problem_of(
                 about=about,
             )
         )
-    mu = written.friction
-    own = {joint.friction for joint in assembly.joints}
-    if len(own) == 1 and own != {None}:
-        # All joints have the same friction of their own: it is that of the structure.
-        mu = own.pop() or 0.0
-        joined = tuple(replace(joint, friction=None) for joint in assembly.joints)
-        assembly = replace(assembly, joints=joined)
-    return Problem(
-        assembly=assembly,
-        mu=mu,
-        gravity=acts.gravity,
-        dead=acts.dead,
-        live=acts.live,
-        load=float(written.load),
-        moves=tuple(moves),
-        shaking=None if written.shake is None else shaking_of(**asdict(written.shake)),
-        title=written.title,
-        source=written.source,
-        weighed=written.density is not None or all(map(_has_weight, bodies)),
-        notes=(*written.notes, *acts.notes, *found),
-    )
+    return tuple(moves)
 
 
 def _has_weight(body: Body) -> bool:
@@ -184,73 +198,102 @@ def structure_record(problem: Problem) -> dict[str, Any]:
     A support that is not known as a body gets one: a flat triangle behind its joint.
     """
     assembly = problem.assembly
-    names = [f"b{index}" for index in range(len(assembly.blocks))]
-    beds = [f"s{index}" for index in range(len(assembly.supports))]
-    given = [block.name for block in assembly.blocks] + [
-        each.name for each in assembly.supports
-    ]
-    if all(given) and len(set(given)) == len(given):
-        names, beds = given[: len(names)], given[len(names) :]
-    fixed: list[dict[str, Any]] = [
-        {"id": name, "polygons": [part.tolist() for part in support.polygons], "fixed": True}
-        for name, support in zip(beds, assembly.supports, strict=True)
-    ]
-    joints: list[dict[str, Any]] = []
-    for index, joint in enumerate(assembly.joints):
-        ground = "" if joint.support is None else beds[joint.support]
-        if joint.support is None and SUPPORT in (joint.before, joint.after):
-            ground = f"ground {index}"
-            out = joint.normal * (-1 if joint.before == SUPPORT else 1) * joint.length / 10
-            far = (joint.inner + joint.outer) / 2 + out
-            corners = np.stack([joint.inner, joint.outer, far])
-            if signed_area(corners) < 0:
-                corners = corners[::-1]
-            corners = corners.tolist()
-            fixed.append({"id": ground, "vertices": corners, "fixed": True})
-        entry: dict[str, Any] = {
-            "a": ground if joint.before == SUPPORT else names[joint.before],
-            "b": ground if joint.after == SUPPORT else names[joint.after],
-            "ends": [joint.inner.tolist(), joint.outer.tolist()],
+    names, beds = _ids(assembly)
+    grounds = {
+        f"ground {index}": _ground(joint)
+        for index, joint in enumerate(assembly.joints)
+        if joint.support is None and SUPPORT in (joint.before, joint.after)
+    }
+    moves = [
+        {
+            "block": beds[move.support],
+            "direction": move.direction.tolist(),
+            "turn_deg": math.degrees(move.turn),
+            "about": move.about.tolist(),
         }
-        if joint.across is not None:
-            entry |= {"ends": [joint.inner.tolist()], "normal": joint.across.tolist()}
-        if joint.faces is not None:
-            entry["faces"] = joint.faces.tolist()
-        if joint.friction is not None:
-            entry["friction"] = _friction_text(joint.friction)
-        joints.append(entry)
+        for move in problem.moves
+    ]
     return {
         "title": problem.title,
         "source": problem.source,
         "friction": _friction_text(problem.mu),
         "size": assembly.size,
         "load": problem.load,
-        "blocks": fixed
-        + [
-            {
-                "id": name,
-                "weight": block.mass * STANDARD_GRAVITY,
-                "centre": block.centre.tolist(),
-                "inertia": block.inertia,
-                "depth": block.depth,
-                "polygons": [part.tolist() for part in block.polygons],
-            }
-            for name, block in zip(names, assembly.blocks, strict=True)
+        "blocks": [
+            *(
+                {
+                    "id": name,
+                    "polygons": [each.tolist() for each in bed.polygons],
+                    "fixed": True,
+                }
+                for name, bed in zip(beds, assembly.supports, strict=True)
+            ),
+            *({"id": name, "vertices": each, "fixed": True} for name, each in grounds.items()),
+            *_block_records(names, problem),
         ],
-        "joints": joints,
+        "joints": [
+            _joint_record(
+                joint, names, f"ground {at}" if joint.support is None else beds[joint.support]
+            )
+            for at, joint in enumerate(assembly.joints)
+        ],
         "dead": [
             {"body": problem.gravity.tolist()},
             *(each for load in problem.dead for each in _load_record(load, names)),
         ],
         "live": [each for load in problem.live for each in _load_record(load, names)],
-        "move": [
-            {
-                "block": beds[move.support],
-                "direction": move.direction.tolist(),
-                "turn_deg": math.degrees(move.turn),
-                "about": move.about.tolist(),
-            }
-            for move in problem.moves
-        ],
+        "move": moves,
         **({} if problem.shaking is None else {"shake": shaking_record(problem.shaking)}),
     }
+
+
+def _ids(assembly: Assembly) -> tuple[list[str], list[str]]:
+    """Return the ids of blocks and of supports: their names, where each has its own."""
+    blocks = [block.name for block in assembly.blocks]
+    beds = [each.name for each in assembly.supports]
+    given = blocks + beds
+    if all(given) and len(set(given)) == len(given):
+        return blocks, beds
+    return [f"b{at}" for at in range(len(blocks))], [f"s{at}" for at in range(len(beds))]
+
+
+def _ground(joint: Joint) -> list[list[float]]:
+    """Return the corners of a flat triangle behind a joint with the ground."""
+    out = joint.normal * (-1 if joint.before == SUPPORT else 1) * joint.length / 10
+    corners = np.stack([joint.inner, joint.outer, (joint.inner + joint.outer) / 2 + out])
+    return (corners[::-1] if signed_area(corners) < 0 else corners).tolist()
+
+
+def _block_records(names: Sequence[str], problem: Problem) -> Iterator[dict[str, Any]]:
+    """Go through the blocks as entries; their joints are given, so each may be free."""
+    touched = set(problem.assembly.sides.ravel().tolist())
+    for at, (name, block) in enumerate(zip(names, problem.assembly.blocks, strict=True)):
+        entry = {
+            "id": name,
+            "weight": block.mass * STANDARD_GRAVITY,
+            "centre": block.centre.tolist(),
+            "inertia": block.inertia,
+            "depth": block.depth,
+            "polygons": [part.tolist() for part in block.polygons],
+        }
+        if at not in touched:
+            entry["free"] = True
+        if len(problem.velocities):
+            *velocity, turn = problem.velocities[at].tolist()
+            entry |= {"velocity": velocity, "spin_deg_s": math.degrees(turn)}
+        yield entry
+
+
+def _joint_record(joint: Joint, names: Sequence[str], ground: str) -> dict[str, Any]:
+    entry: dict[str, Any] = {
+        "a": ground if joint.before == SUPPORT else names[joint.before],
+        "b": ground if joint.after == SUPPORT else names[joint.after],
+        "ends": [joint.inner.tolist(), joint.outer.tolist()],
+    }
+    if joint.across is not None:
+        entry |= {"ends": [joint.inner.tolist()], "normal": joint.across.tolist()}
+    if joint.faces is not None:
+        entry["faces"] = joint.faces.tolist()
+    if joint.friction is not None:
+        entry["friction"] = _friction_text(joint.friction)
+    return entry

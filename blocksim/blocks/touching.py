@@ -205,23 +205,27 @@ def _face_on_face(faces: Faces, pairs: Index, slack: Slack) -> tuple[list[Touch]
     begin = np.where(closed, midway(low, one_low, other_low), begin)
     finish = np.where(closed, midway(high, one_high, other_high), finish)
     widest = np.take_along_axis(gaps, np.abs(gaps).argmax(axis=0)[None], axis=0)[0]
-    chosen = np.flatnonzero(joint)
-    one, other = first[chosen], second[chosen]
-    found = list(
+    chosen, nearly = np.flatnonzero(joint), np.flatnonzero(wide | short)
+    ends = np.stack([begin[chosen], finish[chosen]], axis=1)
+    parted = np.where(closed[chosen, 0], widest[chosen], 0.0)
+    found = _stretches(faces, first[chosen], second[chosen], ends, parted)
+    return found, np.stack([first[nearly], second[nearly]], axis=1)
+
+
+def _stretches(faces: Faces, one: Index, other: Index, ends: Array, gap: Array) -> list[Touch]:
+    """Return where pairs of faces lie on each other."""
+    both = [faces.start[one], faces.end[one], faces.end[other], faces.start[other]]
+    return list(
         map(
             Touch,
             faces.body[one].tolist(),
             faces.body[other].tolist(),
-            np.stack([begin[chosen], finish[chosen]], axis=1),
-            np.stack(
-                [faces.start[one], faces.end[one], faces.end[other], faces.start[other]], axis=1
-            ).reshape(-1, 2, 2, 2),
-            [None] * len(chosen),
-            np.where(closed[chosen, 0], widest[chosen], 0.0).tolist(),
+            ends,
+            np.stack(both, axis=1).reshape(-1, 2, 2, 2),
+            [None] * len(one),
+            gap.tolist(),
         )
     )
-    nearly = np.flatnonzero(wide | short)
-    return found, np.stack([first[nearly], second[nearly]], axis=1)
 
 
 def _corner_on_face(faces: Faces, pairs: Index, slack: Slack) -> tuple[Index, Index, Array]:

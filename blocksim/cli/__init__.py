@@ -1,4 +1,7 @@
-"""The command line: options to questions, answers to text."""
+"""The command line: options to questions, answers to text.
+
+What draws or moves blocks takes a second to import, and is imported where it is asked for.
+"""
 
 from __future__ import annotations
 
@@ -43,6 +46,9 @@ def main() -> None:
     if interrupts.code():
         interrupts.say()
         code = interrupts.code()
+        # Where a signal came while Python ran a string, as it does to make a dataclass, `python
+        # -m` ends by SIGINT whatever the code is; it forgets this when it runs another string.
+        exec("")  # noqa: S102
     sys.exit(code)
 
 
@@ -80,18 +86,14 @@ def _code() -> int:
     except BlocksimError as error:
         return _complain(str(error))
     except click.ClickException as error:
-        return _complain(_plain(" ".join(error.format_message().split())))
+        message = " ".join(error.format_message().split())
+        for said, plain in PLAIN.items():
+            message = message.replace(said, plain)
+        return _complain(message)
     except Exception:
         for line in traceback.format_exc().splitlines():
             _tell(line)
         return CRASHED
-
-
-def _plain(message: str) -> str:
-    """Return what click says of a wrong value, in the words of every other message."""
-    for said, plain in PLAIN.items():
-        message = message.replace(said, plain)
-    return message
 
 
 def _complain(message: str, code: int = WRONG_INPUT) -> int:

@@ -32,6 +32,10 @@ COMMANDS = {
         "Check a proof that blocks stand or fall, in rational arithmetic.",
     ),
     "simulate": ("commands.simulate", "Let it go and record its motion."),
+    "fragility": (
+        "fragile.fragility",
+        "Find which share of records of the ground brings it down, by their amplitude.",
+    ),
     "render": ("commands.render", "Draw what is built to scale, or film its motion."),
     "convert": (
         "converting.convert",
@@ -67,7 +71,7 @@ COMMANDS = {
         "Draw the analytical map of least thickness and collapse modes.",
     ),
     "paper": (
-        "paper.paper",
+        "mapping.paper",
         "Draw every figure of the paper, and compare every number that it prints.",
     ),
     "scenarios": (
@@ -83,7 +87,7 @@ COMMANDS = {
         "Tell what is installed and what each method can do here.",
     ),
     "cite": (
-        "citing.cite",
+        "installed.cite",
         "Print BibTeX of blocksim, of the paper, and of what methods rest on.",
     ),
 }

@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields, is_dataclass
 from inspect import Parameter, getdoc, signature
 from pathlib import Path
 from types import NoneType, UnionType
-from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import click
 
@@ -37,7 +37,14 @@ class _File(click.Path):
         return super().convert(value, param, ctx)
 
 
-class _Number(click.ParamType[Any]):
+if TYPE_CHECKING:
+    AnyType = click.ParamType[Any]
+else:
+    # Generic from click 8.4 on.
+    AnyType = click.ParamType
+
+
+class _Number(AnyType):
     """A number in a range."""
 
     def __init__(self, kind: click.ParamType[Any], known: Range) -> None:
@@ -71,7 +78,6 @@ class Option(Field):
     ----------
     name : str
         With its dashes, where it is not that of the parameter; `--yes/--no` of a flag.
-    metavar : str, optional
     folder : bool
         Whether a path is that of a folder.
     """

@@ -8,22 +8,19 @@ from typing import Annotated
 import click
 
 from blocksim.ask.bracket import bracket as ask_bracket
-from blocksim.ask.carried import carried_of
 from blocksim.ask.check import check as ask_check
+from blocksim.ask.options import Options
 from blocksim.blocks.joints import joint_names
-from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.cli.acting import Crossed, Loading
 from blocksim.cli.arguments import Option
-from blocksim.cli.crossing import cross
-from blocksim.cli.curves import require_curves, write_curves
+from blocksim.cli.built import Given
+from blocksim.cli.curves import cross, require_curves, write_curves
 from blocksim.cli.options import (
     EXIT_CODES,
     THICKNESS,
     AtJoint,
-    Crossed,
-    Given,
+    CasesOption,
     Json,
-    Loading,
     MethodOption,
     MustRest,
     Over,
@@ -34,16 +31,19 @@ from blocksim.cli.options import (
     Spatial,
     Within,
     named_options,
+    refuse,
     settings_of,
 )
 from blocksim.cli.output import answer_with, progress
 from blocksim.cli.proving import write_proof
 from blocksim.cli.question import joint_of
-from blocksim.cli.space import refuse
 from blocksim.cli.subject import anything_asked, is_many, is_structure
 from blocksim.common.checks import require
 from blocksim.report.answers import bracket_record, check_record
 from blocksim.report.answerwords import bracket_lines, check_lines
+from blocksim.report.cases import cases_lines, cases_record
+
+OF_ONE = "left out beside --cases: it is of one case"
 
 
 def check(
@@ -57,13 +57,24 @@ def check(
     must_rest: MustRest = False,
     spatial: Spatial = False,
     proof: ProofFile = None,
+    cases: CasesOption = None,
     as_json: Json = False,
 ) -> None:
     """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided.
 
     Of a folder of structures, or of JSON lines on standard input (-), a line of JSON for each,
-    by limit analysis.
+    by limit analysis. Of --cases, a table with the governing case first, whose exit code it is.
     """
+    if cases is not None:
+        from blocksim.cli.cases import asked_of_cases
+
+        refuse({"joint": joint, "must_rest": must_rest, "proof": proof}, why=OF_ONE)
+        options: Options = {
+            "method": method, "settings": settings_of(settings), "reduce": reduce
+        }  # fmt: skip
+        found = asked_of_cases(cases, scene, given, loading, options, spatial=spatial)
+        answer_with(lambda: cases_record(found), lambda: cases_lines(found), as_json=as_json)
+        raise click.exceptions.Exit(EXIT_CODES[found.governing.answer.verdict])
     if scene is not None and is_many(scene):
         from blocksim.cli.many import check_each
 
@@ -74,7 +85,7 @@ def check(
         }  # fmt: skip
         check_each(scene, given, loading, alone)
     problem = anything_asked(scene, given, loading, spatial=spatial, thick=True)
-    if isinstance(problem, SpatialProblem):
+    if problem.in_space:
         refuse({"joint": joint, "must_rest": must_rest, "proof": proof})
     at = None if joint is None else joint_of(joint, joint_names(problem.assembly))
     with named_options(), progress() as report:
@@ -86,13 +97,14 @@ def check(
             must_rest=must_rest,
             progress=report,
         )
-        told = answer.carried
-        if at is not None and told is not None:
+        if at is not None:
             report(1.0, "thrust")
-            told = carried_of(answer.problem, at, answer.needed)
+        told = answer.carried if at is None else answer.carried_at(at)
     found = answer.proof
     write_proof(answer.method, () if found is None else (found,), proof)
-    answer_with(check_record(answer, told), check_lines(answer, told), as_json=as_json)
+    answer_with(
+        lambda: check_record(answer, told), lambda: check_lines(answer, told), as_json=as_json
+    )
     raise click.exceptions.Exit(EXIT_CODES[answer.verdict])
 
 
@@ -126,13 +138,12 @@ def bracket(
         and not (crosses or spatial or loading.given)
         and not is_structure(scene)
     )
-    for name in ("eta", "ratio") if sought else ():
-        value = getattr(given, name)
-        require(value is None, f"--{name}", value, "left out over thickness")
+    if sought:
+        refuse({"eta": given.eta, "ratio": given.ratio}, why="left out: the least is sought")
     problem = anything_asked(
         scene, given, loading, spatial=spatial, thick=not sought, sought=sought
     )
-    if isinstance(problem, SpatialProblem):
+    if problem.in_space:
         refuse({**asdict(crossed), "proof": proof})
     elif crosses:
         usual = {"--over": over in {None, "load"}, "--within": within is None,
@@ -152,7 +163,6 @@ def bracket(
             progress=report,
         )
     write_proof(answer.method, () if proof is None else answer.proofs, proof)
-    if crossed.out is not None and isinstance(problem, Problem):
+    if crossed.out is not None and not problem.in_space:
         write_curves(problem, answer.over, crossed.out, silent=as_json)
-    record = bracket_record(answer) if as_json else dict[str, object]()
-    answer_with(record, [] if as_json else bracket_lines(answer), as_json=as_json)
+    answer_with(lambda: bracket_record(answer), lambda: bracket_lines(answer), as_json=as_json)

@@ -9,8 +9,9 @@ from blocksim.ask.methods import choose
 from blocksim.ask.simulate import simulate as let_go
 from blocksim.ask.spread import Spreading
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.cli.acting import Loading
 from blocksim.cli.arguments import Argument, Option
+from blocksim.cli.built import Given
 from blocksim.cli.drawing import write_still
 from blocksim.cli.filming import (
     HEIGHT,
@@ -19,7 +20,6 @@ from blocksim.cli.filming import (
     Beside,
     EngineOption,
     Height,
-    RenderOptions,
     Slow,
     Time,
     View,
@@ -27,22 +27,22 @@ from blocksim.cli.filming import (
     film,
     recordings,
     require_height,
+    require_pixels,
 )
 from blocksim.cli.options import (
     OWN,
-    Given,
-    Loading,
     MustRest,
     Scene,
     Set,
+    Spatial,
     named_options,
+    refuse,
     require_given,
     settings_of,
 )
 from blocksim.cli.output import picture_kind, progress, say
 from blocksim.cli.question import question
-from blocksim.cli.spacefilm import film_in_space, model_in_space
-from blocksim.cli.subject import anything_asked, is_structure, problem_asked
+from blocksim.cli.subject import anything_asked
 from blocksim.common.checks import Range, require
 from blocksim.common.files import require_place
 from blocksim.engines import NAMES
@@ -69,9 +69,10 @@ def simulate(
         Option(about="Seconds to record; until decided if left out.", range=RECORDED),
     ] = None,
     settings: Set = None,
+    spatial: Spatial = False,
 ) -> None:
     """Let it go and record its motion."""
-    problem = problem_asked(scene, given, loading, thick=True, out=out)
+    problem = anything_asked(scene, given, loading, spatial=spatial, thick=True, out=out)
     size = problem.length_name
     out = out or Path()
     require(out.suffix == ".npz", "--out", str(out), "a file name ending in .npz")
@@ -101,11 +102,13 @@ def _spread(
 ) -> Recording:
     """Move the supports of a structure until it has fallen, and record it."""
     require(over == "spread", "--over", over, "spread, or left out: nothing else moves slowly")
+    require(not problem.in_space, "--over", over, "left out: supports stay in space")
     able = method == "auto" or choose(method, moving=True).moves_supports
     require(able, "--method", method, "direct: others move no supports")
     require(seconds is None, "--seconds", seconds, "left out: it ends when all has fallen")
     require(settings is None, "--set", settings, "left out where supports move")
-    require(problem.shaking is None, "--shake", over, "left out where supports move")
+    still = "blocks at rest on ground that does not shake: supports move slowly"
+    require(not problem.is_moving, "--over", over, f"left out, or {still}")
     with named_options(), progress() as report:
         return Spreading(problem).recorded(report)
 
@@ -148,35 +151,16 @@ def render(
     out = out or Path()
     kind = picture_kind(out, (*FILMS, "png", "svg", "pdf", "dxf", "html", *MODELS, *TABLES))
     if kind in (*MODELS, *TABLES):
-        options = {"beside": beside, "slow": slow, "time": time, "height": height}
-        for name, value in options.items():
-            require(value is None, f"--{name}", value, f"left out of a .{kind}")
-        if kind in MODELS and is_structure(scene):
-            asked = anything_asked(scene, given, loading)
-            if isinstance(asked, SpatialProblem):
-                require(not must_rest, "--must-rest", must_rest, "left out in space")
-                model_in_space(out, kind, asked, method)
-                return
+        moving = {"beside": beside, "slow": slow, "time": time, "height": height}
+        refuse(moving, why=f"left out of a .{kind}")
         export(out, kind, *recordings(scene, given, loading, method, None, must_rest=must_rest))
-        return
-    filmed = kind in FILMS or view == "3d" or beside is not None
-    if filmed or (scene is not None and scene.endswith(".npz")):
+    elif kind in FILMS or view == "3d" or beside or (scene or "").endswith(".npz"):
         require(kind != "dxf", "--out", str(out), "another kind: a .dxf is of no motion")
-        shown = RenderOptions(view=view, slow=slow, time=time, height=height or HEIGHT)
         require(time is None or kind not in FILMS, "--time", time, "left out of a film")
-        asked = None
-        if kind in FILMS and is_structure(scene):
-            asked = anything_asked(scene, given, loading)
-            if isinstance(asked, SpatialProblem):
-                require(not must_rest, "--must-rest", must_rest, "left out in space")
-                film_in_space(out, asked, method, shown, beside)
-                return
-        runs = recordings(scene, given, loading, method, beside, asked, must_rest=must_rest)
-        film(out, runs, shown)
+        require_height(height or HEIGHT)
+        runs = recordings(scene, given, loading, method, beside, must_rest=must_rest)
+        film(out, runs, time, view=view, slow=slow, height=height or HEIGHT)
     else:
-        for name, value in (("slow", slow), ("time", time)):
-            require(value is None, f"--{name}", value, "left out: the picture is of no motion")
-        if height is not None:
-            require(kind == "png", "--height", height, f"left out: a .{kind} has no pixels")
-            require_height(height)
+        refuse({"slow": slow, "time": time}, why="left out: the picture is of no motion")
+        require_pixels(height, kind)
         write_still(out, kind, scene, given, loading, method, height, must_rest=must_rest)

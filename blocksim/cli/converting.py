@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any, cast
 
 from blocksim.cli.arguments import Argument, Option
+from blocksim.cli.built import Depth, Layer, Mu, Snap, Tolerance, Unit
 from blocksim.cli.options import named_options, require_given
 from blocksim.cli.output import picture_kind, save_picture, say
 from blocksim.cli.structures import reading_of
@@ -13,21 +14,14 @@ from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import json_text, require_place, write_whole
 from blocksim.common.words import counted
-from blocksim.kinds.files import (
-    DRAWN,
-    deepened,
-    is_drawing,
-    named_file,
-    structure_of,
-    with_friction,
-    within,
-)
-from blocksim.reading.drawing import Reading
+from blocksim.kinds.changes import edited
+from blocksim.kinds.files import DRAWN, drawing_of, is_drawing, named_file, structure_of
+from blocksim.reading.drawing import Drawing
 
 
 def convert(
     source: Annotated[
-        str, Argument(about="A drawing, .dxf or .svg, or an assembly of compas, .json.")
+        str, Argument(about="A drawing, .dxf or .svg, a mesh, or an assembly of compas, .json.")
     ],
     out: Annotated[
         Path | None, Option(about="Structure file to write, .json; required.")
@@ -39,29 +33,12 @@ def convert(
             ".png, .svg or .pdf; --out may then be left out."
         ),
     ] = None,
-    mu: Annotated[
-        float | None, Option(about="Friction coefficient, above 0; inf allowed.")
-    ] = None,
-    unit: Annotated[
-        str | None,
-        Option(about="Of the drawing: m, mm, cm, dm, in, ft, or metres that a unit is."),
-    ] = None,
-    layer: Annotated[
-        list[str] | None,
-        Option(
-            metavar="ROLE=NAME",
-            about="Layer that is read as blocks or as supports, or is ignored; repeatable.",
-        ),
-    ] = None,
-    snap: Annotated[
-        float | None, Option(about="Ends of lines that are so near are one corner, in m.")
-    ] = None,
-    depth: Annotated[
-        float | None, Option(about="Depth of the blocks out of the plane in m.")
-    ] = None,
-    tolerance: Annotated[
-        float | None, Option(about="Gaps and overlaps up to this are closed, in m.")
-    ] = None,
+    mu: Mu = None,
+    unit: Unit = None,
+    layer: Layer = None,
+    snap: Snap = None,
+    depth: Depth = None,
+    tolerance: Tolerance = None,
     fixed: Annotated[
         str | None, Option(about="Blocks that stay where they are: ids, with commas.")
     ] = None,
@@ -73,52 +50,45 @@ def convert(
         require_place(out)
     drawn = is_drawing(source)
     if picture is not None:
-        require(drawn, "--picture", str(picture), "left out: it is of drawings")
+        flat = Path(source).suffix.lower() in DRAWN
+        require(flat, "--picture", str(picture), "left out: it is of drawings")
         picture_kind(picture, ("png", "svg", "pdf"), "--picture")
     if drawn:
         require_given(mu=mu)
     reading = reading_of(unit, layer, snap)
+    with named_options():
+        drawing = None if picture is None else drawing_of(source, reading)
     try:
-        with named_options(), named_file(source, reading) as data:
-            said = data if mu is None else with_friction(data, mu)
-            if tolerance is not None:
-                said = within(said, tolerance)
-            if depth is not None:
-                said = deepened(said, depth)
-            require(isinstance(said, dict), "structure", type(said).__name__, "a table of keys")
-            table = _held(cast("dict[str, Any]", said), fixed)
+        with named_options(), named_file(source, reading, drawing) as data:
+            said = edited(data, friction=mu, tolerance=tolerance, depth=depth)
+            table = _held(said, fixed)
             problem = structure_of(table)
     except InputError as error:
-        if picture is not None:
-            _draw(source, reading, picture, error)
+        _draw(drawing, picture, error)
         raise
-    if picture is not None:
-        _draw(source, reading, picture, None)
+    _draw(drawing, picture, None)
     if out is not None:
         write_whole(out, lambda file: file.write(_text(table).encode()))
-    assembly = problem.assembly
-    where = source if out is None else f"wrote {out}"
-    say(
-        f"{where}: {counted(len(assembly.blocks), 'block')}, "
-        f"{counted(len(assembly.supports), 'support')}, "
-        f"{counted(len(assembly.joints), 'joint')}"
-    )
-    for note in problem.notes:
-        say(f"  {note}")
+    made, where = problem.assembly, source if out is None else f"wrote {out}"
+    parts = (made.blocks, "block"), (made.supports, "support"), (made.joints, "joint")
+    sizes = ", ".join(counted(len(each), noun) for each, noun in parts)
+    say(f"{where}: {sizes}", *(f"  {note}" for note in problem.notes))
 
 
-def _draw(source: str, reading: Reading, picture: Path, refusal: InputError | None) -> None:
-    """Draw what was read of a drawing, and what was refused."""
-    # Drawing takes a second to import, which others need not wait for.
+def _draw(drawing: Drawing | None, picture: Path | None, refusal: InputError | None) -> None:
+    """Draw what was read of a drawing, and what was refused, where that is asked for."""
+    if drawing is None or picture is None:
+        return
     from blocksim.view.readfigure import read_figure
 
-    drawing = DRAWN[Path(source).suffix.lower()](source, reading)
     kind = picture.suffix.removeprefix(".")
     save_picture(read_figure(drawing, refusal), picture, kind)
 
 
-def _held(table: dict[str, Any], fixed: str | None) -> dict[str, Any]:
+def _held(said: object, fixed: str | None) -> dict[str, Any]:
     """Return a structure with more blocks that stay where they are."""
+    require(isinstance(said, dict), "structure", type(said).__name__, "a table of keys")
+    table = cast("dict[str, Any]", said)
     if fixed is None:
         return table
     wanted = {each.strip() for each in fixed.split(",")}

@@ -1,16 +1,25 @@
-"""Files of `bracket --over push` and `--over spread`: what is borne as it moves."""
+"""Files of `bracket`: what is borne as blocks move, and as a vehicle crosses."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
 
+from blocksim.ask.crossing import crossing
 from blocksim.blocks.problem import Problem
-from blocksim.cli.output import picture_kind, save_picture, say
+from blocksim.blocks.vehicles import vehicle_of
+from blocksim.cli.acting import Crossed
+from blocksim.cli.options import named_options
+from blocksim.cli.output import answer_with, picture_kind, progress, write_files
 from blocksim.common.checks import require
-from blocksim.common.files import write_whole
 from blocksim.common.sheets import write_sheet
+from blocksim.report.crossing import crossing_lines, crossing_record, write_places
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 KINDS = ("csv", "pdf", "svg", "png")
 OVER = ("push", "spread")
@@ -28,7 +37,6 @@ def require_curves(over: str | None, out: Sequence[Path] | None) -> None:
 
 def write_curves(problem: Problem, over: str, out: Sequence[Path], *, silent: bool) -> None:
     """Write tables and pictures of what is borne as it moves."""
-    # Drawing and motion take a second to import, which other commands need not wait for.
     from blocksim.view.curvefigure import Line, curve_figure
     from blocksim.view.sheet import title_of
 
@@ -61,17 +69,43 @@ def write_curves(problem: Problem, over: str, out: Sequence[Path], *, silent: bo
             for name, place in (("least thrust", 1), ("greatest thrust", 2))
         ]
         axes = "way of the supports [m]", "thrust [kN]"
-    for path in out:
-        kind = path.suffix.removeprefix(".")
-        if kind == "csv":
-            write_whole(path, lambda file: write_sheet(file, names, rows))
-            if not silent:
-                say(f"wrote {path}")
-        else:
-            figure = curve_figure(words, *axes, lines)
-            if silent:
-                from blocksim.view.drawing import save_figure
+    tables = {"csv": partial(write_sheet, names=names, rows=rows)}
+    write_files(out, tables, lambda: curve_figure(words, *axes, lines), silent=silent)
 
-                write_whole(path, lambda file, f=figure, k=kind: save_figure(f, file, k))
-            else:
-                save_picture(figure, path, kind)
+
+def cross(
+    problem: Problem, crossed: Crossed, usual: Mapping[str, bool], *, as_json: bool
+) -> None:
+    """Find the worst place of a vehicle, and tell it.
+
+    Parameters
+    ----------
+    usual : mapping of str to bool
+        Options of other searches, and whether they were left out or say nothing else.
+    """
+    for option, ok in usual.items():
+        allowed = "left out beside --vehicle: limit analysis searches over its places"
+        require(ok, option, "given", allowed)
+    for path in crossed.out or ():
+        picture_kind(path, (*KINDS, "dxf"))
+    allowed = "given beside --vehicle: blocks have no weight in kN"
+    require(problem.weighed, "--unit-weight", "none", allowed)
+    with named_options(), progress() as report:
+        found = crossing(problem, vehicle_of(crossed.vehicle or ""), progress=report)
+    answer_with(lambda: crossing_record(found), lambda: crossing_lines(found), as_json=as_json)
+
+    def draw(file: BinaryIO) -> None:
+        from blocksim.view.sheet import sheet_of
+        from blocksim.view.sheetdxf import write_dxf
+
+        verdict = f"worst place of {found.vehicle.words}"
+        sheet = sheet_of(found.problem, verdict=verdict, mechanism=found.mechanism)
+        write_dxf(sheet, file)
+
+    def figure() -> Figure:
+        from blocksim.view.curvefigure import envelope_figure
+
+        return envelope_figure(found)
+
+    tables = {"csv": partial(write_places, found), "dxf": draw}
+    write_files(crossed.out or (), tables, figure, silent=as_json)

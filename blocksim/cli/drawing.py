@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from blocksim.arch.theory import least_thickness
+from blocksim.ask.answer import Check
 from blocksim.ask.check import check
-from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.cli.acting import Loading
+from blocksim.cli.built import Given
 from blocksim.cli.filming import picture_of_leaning
-from blocksim.cli.options import Given, Loading, named_options
+from blocksim.cli.options import named_options, refuse
 from blocksim.cli.output import progress, save_picture, say
 from blocksim.cli.question import question
 from blocksim.cli.subject import anything_asked, is_structure, problem_asked
@@ -36,17 +38,23 @@ def write_still(
     """
     built = is_structure(scene) or loading.given
     asked = None if built else question(scene, given)
-    flat = "another kind: a page to turn around (.html) is of blocks in space"
+    solid = "another kind: a page to turn around (.html) is of blocks in space"
     if asked is None or (not asked.lean and asked.has_thickness):
         problem = anything_asked(scene, given, loading, thick=True)
-        if isinstance(problem, SpatialProblem):
-            require(not must_rest, "--must-rest", must_rest, "left out in space")
-            _write_perspective(out, kind, problem, method, height)
+        if problem.in_space:
+            refuse({"must_rest": must_rest})
+            perspective = "a .png, .svg or .pdf: it is drawn in perspective; or .html, to turn "
+            require(kind != "dxf", "--out", str(out), f"{perspective}it around")
         else:
-            require(kind != "html", "--out", str(out), flat)
-            _write_sheet(out, kind, problem, method, height, must_rest=must_rest)
+            require(kind != "html", "--out", str(out), solid)
+            as_built = "limit or an engine: it is drawn as built"
+            require(method != "theory", "--method", method, as_built)
+        with named_options(), progress() as report:
+            chosen = method or "auto"
+            answer = check(problem, method=chosen, must_rest=must_rest, progress=report)
+        _write(out, kind, answer, height)
         return
-    require(kind != "html", "--out", str(out), flat)
+    require(kind != "html", "--out", str(out), solid)
     require(method is None, "--method", method, "left out: the picture is of no motion")
     require(not must_rest, "--must-rest", must_rest, "left out: nothing is built in its plane")
     flat = "a .png, .svg or .pdf: it leans" if asked.lean else (
@@ -56,7 +64,6 @@ def write_still(
     if asked.lean:
         picture_of_leaning(out, kind, problem_asked(scene, given, loading), height)
         return
-    # matplotlib takes a second to import, which other commands need not wait for.
     from blocksim.view.archfigure import arch_figure, picture_of_theory
 
     with named_options():
@@ -69,41 +76,8 @@ def write_still(
     save_picture(arch_figure(pictures), out, kind, height)
 
 
-def _write_sheet(
-    out: Path,
-    kind: str,
-    problem: Problem,
-    method: str | None,
-    height: int | None,
-    *,
-    must_rest: bool,
-) -> None:
-    """Draw a problem to scale, with its answer."""
-    as_built = "limit or an engine: it is drawn as built"
-    require(method != "theory", "--method", method, as_built)
-    # Drawing takes a second to import, which other commands need not wait for.
-    from blocksim.view.sheet import answer_sheet
-    from blocksim.view.sheetdxf import write_dxf
-    from blocksim.view.sheetfigure import sheet_figure
-
-    with named_options(), progress() as report:
-        answer = check(problem, method=method or "auto", must_rest=must_rest, progress=report)
-    sheet = answer_sheet(answer)
-    if kind == "dxf":
-        write_whole(out, lambda file: write_dxf(sheet, file))
-        say(f"wrote {out}")
-        return
-    save_picture(sheet_figure(sheet), out, kind, height)
-
-
-def _write_perspective(
-    out: Path, kind: str, problem: SpatialProblem, method: str | None, height: int | None
-) -> None:
-    """Draw a problem in space, with its answer, or write a page to turn it around."""
-    allowed = "a .png, .svg or .pdf: it is drawn in perspective; or .html, to turn it around"
-    require(kind != "dxf", "--out", str(out), allowed)
-    with named_options(), progress() as report:
-        answer = check(problem, method=method or "auto", progress=report)
+def _write(out: Path, kind: str, answer: Check[Any], height: int | None) -> None:
+    """Draw an answer to scale, in space in perspective, or write a page to turn it around."""
     if kind == "html":
         from blocksim.view.turning import turning_page
 
@@ -111,6 +85,18 @@ def _write_perspective(
         write_whole(out, lambda file: file.write(text))
         say(f"wrote {out}: a page to turn it around")
         return
-    from blocksim.view.solidfigure import solid_figure
+    if answer.problem.in_space:
+        from blocksim.view.solidfigure import solid_figure
 
-    save_picture(solid_figure(answer), out, kind, height)
+        save_picture(solid_figure(answer), out, kind, height)
+        return
+    from blocksim.view.sheet import answer_sheet
+    from blocksim.view.sheetdxf import write_dxf
+    from blocksim.view.sheetfigure import sheet_figure
+
+    sheet = answer_sheet(answer)
+    if kind == "dxf":
+        write_whole(out, lambda file: write_dxf(sheet, file))
+        say(f"wrote {out}")
+        return
+    save_picture(sheet_figure(sheet), out, kind, height)

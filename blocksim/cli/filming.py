@@ -4,25 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from blocksim.ask.check import check
 from blocksim.ask.methods import choose
 from blocksim.ask.rest import let_go, rest_words
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.cli.acting import Loading
 from blocksim.cli.arguments import Option
-from blocksim.cli.options import OWN, Given, Loading, named_options, option_of
+from blocksim.cli.built import Given
+from blocksim.cli.options import OWN, named_options, refuse
 from blocksim.cli.output import progress, say
-from blocksim.cli.subject import problem_asked
+from blocksim.cli.subject import anything_asked
 from blocksim.common.checks import Range, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import write_whole
 from blocksim.common.words import counted
 from blocksim.engines import NAMES
-from blocksim.kinds.recorded import load_recording
+from blocksim.kinds.loading import load_recording
 from blocksim.report.poses import write_recording_csv, write_recording_json
 from blocksim.report.problems import tilt_and_lean
 from blocksim.simulation.motion import MOVED
@@ -41,6 +43,8 @@ SHOWN = 0.2
 
 MOST_NUMBERS = 5_000_000
 """Of the poses of a recording that is written as a model or a table."""
+ROUGH = 1e-4
+"""Residual of contacts in space that is told."""
 MODELS, TABLES = ("glb", "gltf"), ("csv", "json")
 """Endings of recordings as glTF, and as numbers."""
 
@@ -73,31 +77,18 @@ EngineOption = Annotated[
 ]
 
 
-@dataclass(frozen=True, kw_only=True)
-class RenderOptions:
-    """How recordings are shown.
-
-    Raises
-    ------
-    InputError
-        If the height is out of range.
-    """
-
-    view: Literal["2d", "3d"]
-    slow: float | None
-    time: float | None
-    height: int
-
-    def __post_init__(self) -> None:
-        """Check the height."""
-        require_height(self.height)
-
-
 def require_height(height: int) -> None:
     """Refuse a height of frames or pictures that is out of range."""
     low, high = HEIGHTS
     fits = low <= height <= high and height % 2 == 0
     require(fits, "--height", height, f"an even number from {low} to {high}")
+
+
+def require_pixels(height: int | None, kind: str) -> None:
+    """Refuse a height of a picture that has no pixels, or one out of range."""
+    if height is not None:
+        require(kind == "png", "--height", height, f"left out: a .{kind} has no pixels")
+        require_height(height)
 
 
 def recordings(
@@ -106,23 +97,21 @@ def recordings(
     loading: Loading,
     method: str | None,
     beside: Path | None,
-    problem: Problem | None = None,
     *,
     must_rest: bool = False,
-) -> list[Recording]:
-    """Read recordings, or simulate the scenario; `problem` is that, where it is read.
+) -> list[Recording[Any]]:
+    """Read recordings, or simulate the scenario, in the plane or in space.
 
     Where it is asked whether it must rest, blocks are let go along the motion that is found.
     """
     second = [] if beside is None else [load_recording(beside)]
     if scene is not None and scene.endswith(".npz"):
-        said = {**asdict(given), **asdict(loading), "method": method}
-        said["must_rest"] = must_rest or None
-        for name, value in said.items():
-            require(value is None, option_of(name), value, "left out: the recording says it")
+        said = {**asdict(given), **asdict(loading), "method": method, "must_rest": must_rest}
+        refuse(said, why="left out: the recording says it")
         return [load_recording(Path(scene)), *second]
-    problem = problem or problem_asked(scene, given, loading)
+    problem = anything_asked(scene, given, loading)
     if must_rest:
+        refuse({"must_rest": must_rest and problem.in_space})
         return [_along_motion(problem, method), *second]
     with named_options(), progress() as report:
         until = FALL if problem.shaking is None else None
@@ -141,23 +130,14 @@ def _along_motion(problem: Problem, method: str | None) -> Recording:
         return let_go(problem, found.motion.accelerations, progress=report)
 
 
-def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:
+def film(out: Path, shown: Sequence[Recording[Any]], at: float | None, **options: Any) -> None:
     """Draw recordings into a file and say so."""
-    # Drawing and encoding take a second to import, which other commands need not wait for.
     from blocksim.view.video import STILLS, render
 
     with progress() as report:
-        made = render(
-            shown,
-            out,
-            view=options.view,
-            slow=options.slow,
-            at=options.time,
-            height=options.height,
-            progress=report,
-        )
+        made = render(shown, out, at=at, progress=report, **options)
     if out.suffix.removeprefix(".") in STILLS:
-        asked = 0.0 if options.time is None else options.time
+        asked = at or 0.0
         end = made.ends_before(asked)
         later = f": {asked:g} is after the end, so it shows the end, {end}"
         say(f"wrote {out}{later if end else ''}")
@@ -173,20 +153,22 @@ def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:
         f"{pace}, and {ends if made.speed else f'{rest} at rest'}{why}"
     )
     for recording, moves in zip(shown, made.moves, strict=True):
+        left = recording.quality.residual or 0.0
+        if recording.problem.in_space and left > ROUGH:
+            say(f"Coulomb's law was kept to {left:.1g} of the forces, where it was worst")
         if not moves:
             say(_motionless(recording))
 
 
-def export(out: Path, kind: str, recording: Recording) -> None:
+def export(out: Path, kind: str, recording: Recording[Any]) -> None:
     """Write a recording as glTF or as a table, in metres and seconds, and say so."""
     numbers = recording.poses.size
     allowed = f"at most {MOST_NUMBERS} as .{kind}: of a shorter recording"
     require(numbers <= MOST_NUMBERS, "numbers", numbers, allowed)
     if kind in MODELS:
-        # What it draws with takes a second to import, which other commands need not wait for.
-        from blocksim.view.gltf import write_gltf
+        from blocksim.view.models import write_model
 
-        write_whole(out, lambda file: write_gltf(recording, file, kind))
+        write_whole(out, lambda file: write_model(recording, file, kind))
     else:
         write = write_recording_csv if kind == "csv" else write_recording_json
         write_whole(out, lambda file: write(recording, file))
@@ -215,7 +197,6 @@ def picture_of_leaning(out: Path, kind: str, problem: Problem, height: int | Non
 
     The motion is that by which a check decides, drawn larger.
     """
-    # Drawing takes a second to import, which other commands need not wait for.
     from blocksim.view.film import Film
 
     with named_options(), progress() as report:

@@ -1,11 +1,15 @@
-"""The command doctor: what is installed."""
+"""The commands doctor and cite: what is installed, and what it rests on."""
 
 from __future__ import annotations
 
 import platform
+from typing import Annotated
 
 from blocksim import __version__
-from blocksim.ask.doctor import examine, libraries
+from blocksim.ask import doctor as installed
+from blocksim.ask.methods import METHODS
+from blocksim.cli.arguments import Option
+from blocksim.cli.options import named_options
 from blocksim.cli.output import say
 from blocksim.cli.terminal import Table, show
 
@@ -13,10 +17,21 @@ from blocksim.cli.terminal import Table, show
 def doctor() -> None:
     """Tell what is installed and what each method can do here."""
     table = Table("method", "version", "here", "finest bracket", "sees")
-    for finding in examine():
+    for finding in installed.examine():
         finest = "exact" if finding.finest == 0 else f"{finding.finest:g}"
         here = finding.remedy or "ready"
         table.add_row(finding.method, finding.version or "-", here, finest, finding.sees)
     show(table)
     say(f"blocksim {__version__}, Python {platform.python_version()}")
-    say(", ".join(f"{name} {found or '-'}" for name, found in libraries().items()))
+    say(", ".join(f"{name} {found or '-'}" for name, found in installed.libraries().items()))
+
+
+def cite(
+    methods: Annotated[
+        list[str] | None,
+        Option(name="--method", about=f"Repeatable, or all: {', '.join(METHODS.shipped)}."),
+    ] = None,
+) -> None:
+    """Print BibTeX of blocksim, of the paper, and of what methods rest on."""
+    with named_options():
+        say(*installed.cite(*methods or []).splitlines())

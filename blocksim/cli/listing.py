@@ -11,7 +11,7 @@ from blocksim.cli.output import say
 from blocksim.cli.terminal import Table, show
 from blocksim.common.errors import InputError, perhaps
 from blocksim.common.fields import fields_of
-from blocksim.kinds import KINDS, SOLID_KINDS
+from blocksim.kinds import KINDS
 from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.studies.structures import structures
 
@@ -57,16 +57,15 @@ def list_kinds(
     """List the kinds of structures, or the parameters of one."""
     if name is None:
         table = Table("kind", "what it is", "parameters")
-        for kind in (*KINDS.values(), *SOLID_KINDS.values()):
-            where = " (in space)" if kind.name in SOLID_KINDS else ""
+        for kind in KINDS.values():
+            where = " (in space)" if kind.in_space else ""
             table.add_row(kind.name, kind.about + where, ", ".join(fields_of(kind)))
         show(table)
         return
-    known = [*KINDS, *SOLID_KINDS]
-    if name not in known:
-        raise InputError("kind", name, f"one of {', '.join(known)}{perhaps(name, known)}")
+    if name not in KINDS:
+        raise InputError("kind", name, f"one of {', '.join(KINDS)}{perhaps(name, KINDS)}")
     table = Table("parameter", "if left out", "may be", "what it is", "--over")
-    usual = SOLID_KINDS[name]() if name in SOLID_KINDS else KINDS[name]()
+    usual = KINDS[name]()
     for each, known in fields_of(type(usual)).items():
         over = ", ".join(over for over in usual.bracketed if over.partition(".")[0] == each)
         table.add_row(each, known.said(getattr(usual, each)), known.allowed, known.about, over)

@@ -12,13 +12,15 @@ from typing import NoReturn, cast
 
 import click
 
-from blocksim.ask.bulk import BATCH, LARGEST, Told, check_batches
-from blocksim.cli.options import Given, Loading, named_options, option_of
+from blocksim.ask.bulk import BATCH, LARGEST, check_batches
+from blocksim.cli.acting import Loading
+from blocksim.cli.built import Given
+from blocksim.cli.options import named_options, option_of
 from blocksim.cli.subject import STREAM
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import json_text
-from blocksim.kinds.files import DRAWN, LARGEST_FILES
+from blocksim.kinds.files import LARGEST_FILES, OTHERS
 
 AT_ONCE = 1 << 16
 """Bytes of a stream that are read at once, or as many as there are."""
@@ -47,7 +49,7 @@ def check_each(
         names = ({"line": number} for number in count(1))
         told = check_batches(_lines(), friction=friction)
     else:
-        endings = (*LARGEST_FILES, *DRAWN)
+        endings = (*LARGEST_FILES, *OTHERS)
         paths = sorted(p for p in Path(scene).iterdir() if p.suffix.lower() in endings)
         if not paths:
             raise InputError("folder", MISSING, f"files in {', '.join(endings)}", where=scene)
@@ -55,16 +57,10 @@ def check_each(
         batches = (paths[at : at + BATCH] for at in range(0, len(paths), BATCH))
         told = check_batches(batches, friction=friction)
     for name, each in zip(names, told, strict=False):
-        click.echo(json_text({**name, **_record(each)}))
+        title = {"title": each.title} if each.title else {}
+        answer = {**title, "verdict": each.verdict, "margin": each.margin}
+        click.echo(json_text({**name, **({"error": each.error} if each.error else answer)}))
     raise click.exceptions.Exit(0)
-
-
-def _record(told: Told) -> dict[str, object]:
-    """Return what is said of one."""
-    if told.error is not None:
-        return {"error": told.error}
-    title = {"title": told.title} if told.title else {}
-    return {**title, "verdict": told.verdict, "margin": told.margin}
 
 
 def _lines() -> Iterator[list[bytes]]:

@@ -1,15 +1,19 @@
-"""The command map: the map as a picture, as a page or in numbers."""
+"""The commands map and paper: the map as a picture, a page or in numbers; every figure."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Annotated, Literal
 
-from blocksim.cli.arguments import Option
+import click
+
+from blocksim.cli.arguments import Argument, Option
 from blocksim.cli.options import Json, require_given
-from blocksim.cli.output import answer_with, picture_kind, save_picture, say
-from blocksim.common.checks import require
+from blocksim.cli.output import answer_with, picture_kind, progress, save_picture, say
+from blocksim.common.checks import Range, require
+from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import write_whole
+from blocksim.common.words import counted
 
 ZOOMS = {"whole": (0.0, 2.0), "central": (0.6, 1.2)}
 LINE_ZOOMS = {"whole": (0.0, 2.0), "lower": (0.0, 1.0), "upper": (0.6, 2.0)}
@@ -59,8 +63,7 @@ def draw_map(
     require(out is None, "--out", str(out), "left out with --table or --json")
     from blocksim.report.maptable import map_lines, map_record
 
-    record = map_record(weight) if as_json else {}
-    answer_with(record, [] if as_json else map_lines(weight), as_json=as_json)
+    answer_with(lambda: map_record(weight), lambda: map_lines(weight), as_json=as_json)
 
 
 def write_map(
@@ -77,19 +80,20 @@ def write_map(
     if kind != "html":
         page = "left out unless --out ends in .html"
         require(results is None, "--results", str(results), page)
+    what = ""
     if kind in {"html", "csv"}:
-        what = {"html": "left out where --out is a page", "csv": "left out where --out is .csv"}
-        require(not lines, "--lines", lines, what[kind])
-        require(zoom == "whole", "--zoom", zoom, what[kind])
-        require(not phi, "--phi", phi, what[kind])
+        what = "left out where --out is " + ("a page" if kind == "html" else ".csv")
+        require(not lines, "--lines", lines, what)
+        require(zoom == "whole", "--zoom", zoom, what)
+        require(not phi, "--phi", phi, what)
     if kind == "html":
-        require(
-            weight == "centreline",
-            "--weight",
-            weight,
-            "left out where --out is a page: it asks",
-        )
-        _map_page(out, results)
+        require(weight == "centreline", "--weight", weight, f"{what}: it asks")
+        from blocksim.view.explorer import explorer_page, read_results
+
+        rows = [] if results is None else read_results(results)
+        page = explorer_page(rows, str(results or "")).encode()
+        write_whole(out, lambda file: file.write(page))
+        say(f"wrote {out}")
         return
     if kind == "csv":
         from blocksim.report.maptable import map_sheet
@@ -98,7 +102,6 @@ def write_map(
         write_whole(out, lambda file: file.write(sheet))
         say(f"wrote {out}")
         return
-    # matplotlib takes a second to import, which other commands need not wait for.
     from blocksim.view.linemap import line_map_figure
     from blocksim.view.mapfigure import map_figure
     from blocksim.view.mapshapes import FrictionAxis
@@ -113,10 +116,42 @@ def write_map(
     save_picture(figure, out, kind)
 
 
-def _map_page(out: Path, results: Path | None) -> None:
-    from blocksim.view.explorer import explorer_page, read_results
+MET = 1e-12
+"""Relative difference up to which a printed number is met."""
 
-    rows = [] if results is None else read_results(results)
-    html = explorer_page(rows, str(results or ""))
-    write_whole(out, lambda file: file.write(html.encode()))
-    say(f"wrote {out}")
+
+def paper(
+    out: Annotated[
+        Path | None,
+        Argument(about="Folder for the figures and a page, index.html; required.", folder=True),
+    ] = None,
+    figures: Annotated[
+        list[int] | None,
+        Option(
+            name="--figure",
+            metavar="N",
+            range=Range(low=1, high=25, whole=True),
+            about="Only this one; repeatable.",
+        ),
+    ] = None,
+    kind: Annotated[
+        Literal["svg", "png"], Option(name="--format", about="Of the pictures.")
+    ] = "svg",
+) -> None:
+    """Draw every figure of the paper, and compare every number that it prints.
+
+    Exit code 1 where a number is not met.
+    """
+    if out is None:
+        raise InputError("OUT", MISSING, "a folder")
+    from blocksim.report.paperpage import write_paper
+
+    with progress() as report:
+        paths, worst = write_paper(out, figures, kind, progress=report)
+    say(
+        f"every number printed is met to {worst:.0e}"
+        if worst <= MET
+        else f"MISSES a number: {worst:.0e}"
+    )
+    say(f"wrote {paths[0]}, with {counted(len(paths) - 2, 'figure')} and {paths[1].name}")
+    raise click.exceptions.Exit(int(worst > MET))

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, BinaryIO
 
 import click
 
@@ -47,12 +47,37 @@ def save_picture(figure: Figure, out: Path, kind: str, height: int | None = None
     say(f"wrote {out}")
 
 
-def answer_with(record: Mapping[str, object], lines: list[str], *, as_json: bool) -> None:
-    """Print an answer, as one JSON object or as lines for people."""
+def write_files(
+    paths: Iterable[Path],
+    tables: Mapping[str, Callable[[BinaryIO], object]],
+    figure: Callable[[], Figure],
+    *,
+    silent: bool = False,
+) -> None:
+    """Write files by their endings, one of `tables` or else a picture, and say so."""
+    for path in paths:
+        kind = path.suffix.removeprefix(".")
+        if kind in tables:
+            write_whole(path, tables[kind])
+        else:
+            from blocksim.view.drawing import save_figure
+
+            write_whole(path, lambda file, kind=kind: save_figure(figure(), file, kind))
+        if not silent:
+            say(f"wrote {path}")
+
+
+def answer_with(
+    record: Callable[[], Mapping[str, object]],
+    lines: Callable[[], list[str]],
+    *,
+    as_json: bool,
+) -> None:
+    """Print an answer, as one JSON object or as lines for people; what is told is made."""
     if as_json:
-        click.echo(printable(json_text(record)))
+        click.echo(printable(json_text(record())))
     else:
-        say(*lines)
+        say(*lines())
 
 
 def say(*lines: str) -> None:

@@ -8,7 +8,8 @@ from dataclasses import replace
 from typing import Any
 
 from blocksim.arch.dimensions import require_measured, require_unit_weight
-from blocksim.cli.options import Given, named_options, option_of, require_given
+from blocksim.cli.built import Given
+from blocksim.cli.options import named_options, option_of, refuse, require_given
 from blocksim.common.checks import ETA, is_number, require
 from blocksim.common.errors import InputError, perhaps
 from blocksim.kinds import KINDS
@@ -22,37 +23,25 @@ def question(
 
     Parameters
     ----------
-    scene : str or None
-    given : Given
     thick : bool
         Whether a thickness has to be given where there is no scenario.
     needed : object
         Other options that have to be given, by name.
     """
     if scene is None:
-        given_mu = given.mu if given.friction_angle is None else given.friction_angle
-        if given.measured:
-            thickness = given.thickness if given.ratio is None else given.ratio
-            thick_enough = {"thickness": thickness} if thick else {}
-            require_given(
-                instead_of(given_mu, **thick_enough),
-                **needed,
-                span=given.span,
-                rise=given.rise,
-                mu=given_mu,
-                **thick_enough,
-            )
-        else:
-            eta = given.eta if given.ratio is None else given.ratio
-            thick_enough = {"eta": eta} if thick else {}
-            instead = instead_of(given_mu, **thick_enough)
-            if given.alpha is None:
-                instead = IN_METRES
-            require_given(instead, **needed, alpha=given.alpha, mu=given_mu, **thick_enough)
+        mu = given.mu if given.friction_angle is None else given.friction_angle
+        measured = bool(given.measured)
+        sizes, thickness = (("span", "rise"), "thickness") if measured else (("alpha",), "eta")
+        thick_by = getattr(given, thickness) if given.ratio is None else given.ratio
+        thick_enough = {thickness: thick_by} if thick else {}
+        by_angle = not measured and given.alpha is None
+        instead = IN_METRES if by_angle else instead_of(mu, **thick_enough)
+        shape = {name: getattr(given, name) for name in sizes}
+        require_given(instead, **needed, **shape, mu=mu, **thick_enough)
     require_given(**needed)
     no_kind = "left out: it is for kinds of structures"
-    for option, value in given.drawn.items():
-        raise InputError(option, value, "left out: it is of drawings, and this is an arch")
+    no_drawing = "left out: it is of drawings, and this is an arch"
+    refuse(given.drawn, why=no_drawing)
     require(given.parameters is None, "--with", " ".join(given.parameters or ()), no_kind)
     _require_ranges(given)
     asked = Scenario(given=USUAL) if scene is None else _scenario(scene)
@@ -110,11 +99,9 @@ def _require_ranges(given: Given) -> None:
     require(not both, "--ratio", given.ratio, "left out where --eta is given")
     both = given.thickness is not None and given.ratio is not None
     require(not both, "--ratio", given.ratio, "left out where --thickness is given")
-    for name in ("alpha", "eta") if given.measured else ():
-        allowed = (
-            f"left out beside {option_of(next(iter(given.measured)))}: give one or the other"
-        )
-        require(getattr(given, name) is None, f"--{name}", getattr(given, name), allowed)
+    for name in list(given.measured)[:1]:
+        beside = f"left out beside {option_of(name)}: give one or the other"
+        refuse({"alpha": alpha, "eta": given.eta}, why=beside)
 
 
 def _measured(asked: Scenario, given: Given) -> dict[str, Any]:

@@ -51,7 +51,7 @@ def score(
     found = scored(head, said, asked)
     record = found.record()
     paths = [] if out is None else write_score(found, out)
-    answer_with(record, score_lines(record, known_scores()), as_json=as_json)
+    answer_with(lambda: record, lambda: score_lines(record, known_scores()), as_json=as_json)
     if paths and not as_json:
         say("wrote " + ", ".join(map(str, paths)))
     lost = () if before is None else worse(record, before)

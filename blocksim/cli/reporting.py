@@ -5,16 +5,18 @@ from __future__ import annotations
 import shlex
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import click
 
-from blocksim.ask.check import check
+from blocksim.ask.check import Check, check
+from blocksim.ask.options import Options
+from blocksim.cli.acting import Loading
 from blocksim.cli.arguments import Option
+from blocksim.cli.built import Given
 from blocksim.cli.options import (
     EXIT_CODES,
-    Given,
-    Loading,
+    CasesOption,
     MethodOption,
     Scene,
     Set,
@@ -23,7 +25,7 @@ from blocksim.cli.options import (
     settings_of,
 )
 from blocksim.cli.output import picture_kind, progress, say
-from blocksim.cli.subject import problem_asked
+from blocksim.cli.subject import anything_asked
 from blocksim.common.checks import require
 from blocksim.common.dates import made_at
 from blocksim.common.files import write_whole
@@ -44,9 +46,12 @@ def report(
     date: Annotated[str, Option(about="Date of the title block; today if left out.")] = "",
     method: MethodOption = "auto",
     settings: Set = None,
+    cases: CasesOption = None,
 ) -> None:
-    """Write a report on one structure, to print and to sign. Exit codes are those of check."""
-    problem = problem_asked(scene, given, loading, thick=True, out=out)
+    """Write a report on one structure, to print and to sign. Exit codes are those of check.
+
+    With --cases it compares them, and reports on the one that governs.
+    """
     require_given(out=out)
     out = out or Path()
     kind = picture_kind(out, ("html", "pdf", "dxf"))
@@ -55,19 +60,23 @@ def report(
     as_built = "limit or an engine: it is of the blocks as built"
     require(method != "theory", "--method", method, as_built)
     own = settings_of(settings)
-    # Drawing takes a second to import, which other commands need not wait for.
     from blocksim.report.sheetpage import structure_page
     from blocksim.view.sheet import Titles, answer_sheet
     from blocksim.view.sheetdxf import write_dxf
 
-    with named_options(), progress() as told:
-        answer = check(problem, method=method, settings=own, progress=told)
-    titles = Titles(
-        project=project, part=part, engineer=engineer, date=date or made_at().partition(" ")[0]
-    )
+    options: Options = {"method": method, "settings": own}
+    compared = None
+    if cases is not None:
+        from blocksim.cli.cases import asked_of_cases
+
+        compared = asked_of_cases(cases, scene, given, loading, options)
+    answer = compared.governing.answer if compared else _answer(scene, given, loading, options)
+    on = date or made_at().partition(" ")[0]
+    titles = Titles(project=project, part=part, engineer=engineer, date=on)
     if kind == "dxf":
-        sheet = answer_sheet(answer, titles)
-        write_whole(out, lambda file: write_dxf(sheet, file))
+        flat = "a .html or .pdf: it is of blocks in space"
+        require(not answer.problem.in_space, "--out", str(out), flat)
+        write_whole(out, lambda file: write_dxf(answer_sheet(answer, titles), file))
     else:
         page = structure_page(
             answer,
@@ -75,8 +84,17 @@ def report(
             command=shlex.join(["blocksim", *sys.argv[1:]]),
             settings=", ".join(f"{name} {value:g}" for name, value in own.items()),
             titles=titles,
+            cases=compared,
         )
         content = printed_page(page) if kind == "pdf" else page.encode()
         write_whole(out, lambda file: file.write(content))
     say(f"wrote {out}: {answer.verdict.value}, by {answer.method}")
     raise click.exceptions.Exit(EXIT_CODES[answer.verdict])
+
+
+def _answer(scene: str | None, given: Given, loading: Loading, options: Options) -> Check[Any]:
+    """Ask about one structure."""
+    problem = anything_asked(scene, given, loading, thick=True)
+    with named_options(), progress() as told:
+        asked: Options = {**options, "progress": told}
+        return check(problem, **asked)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from typing import cast
+from dataclasses import asdict, replace
+from typing import Any, cast
 
 from blocksim.arch.dimensions import require_unit_weight
 from blocksim.blocks.outlines import signed_area
@@ -20,15 +20,30 @@ from blocksim.blocks.road import (
 )
 from blocksim.blocks.shaking import SHAPES, Shaking, read_table
 from blocksim.blocks.soil import Soil, coefficients, resistance
-from blocksim.cli.options import SOIL, Given, Loading, named_options, option_of, require_given
+from blocksim.cli.acting import SOIL, Loading
+from blocksim.cli.built import Given
+from blocksim.cli.options import named_options, option_of, refuse, require_given
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.kinds.circular import LEAST_DENSITY
 from blocksim.limit.crushing import require_sizes
 
+IN_SPACE = {"parameters", "mu", "friction_angle", "unit_weight", "tolerance", "unit", "layer",
+            "load", "tilt", "azimuth", "gravity"}  # fmt: skip
+"""Options that mean something in space."""
 
-def loaded(problem: Problem, given: Given, loading: Loading) -> Problem:
-    """Put on a problem what the options say: friction, load, tilt, lean."""
+
+def loaded(problem: Problem[Any], given: Given, loading: Loading) -> Problem[Any]:
+    """Put on a problem what the options say: friction, load, tilt, lean.
+
+    Raises
+    ------
+    InputError
+        If an option is out of range, or means nothing in space.
+    """
+    if problem.in_space:
+        refuse({**asdict(given), **asdict(loading)}, IN_SPACE | given.sizes.keys())
+        problem = replace(problem, azimuth=math.radians(loading.azimuth or 0.0))
     with named_options():
         if given.friction is not None:
             problem = problem.with_friction(given.friction)
@@ -44,22 +59,18 @@ def loaded(problem: Problem, given: Given, loading: Loading) -> Problem:
             problem = problem.tilted(math.radians(loading.tilt))
         if given.lean is not None:
             problem = problem.leaning(math.radians(given.lean))
+        if loading.gravity is not None:
+            problem = problem.under(loading.gravity)
         problem = replace(problem, shaking=_shaking(problem.shaking, loading))
-        return _moved(problem, loading)
+        if loading.spread is not None:
+            from blocksim.ask.moved import spread_by
 
+            problem = spread_by(problem, loading.spread)
+        if loading.push is not None:
+            from blocksim.ask.push import pushed
 
-def _moved(problem: Problem, loading: Loading) -> Problem:
-    """Move the supports of a problem apart, and push it sideways, as the options say."""
-    if loading.spread is not None:
-        # What moves supports is loaded where it is asked for.
-        from blocksim.ask.moved import spread_by
-
-        problem = spread_by(problem, loading.spread)
-    if loading.push is not None:
-        from blocksim.ask.push import pushed
-
-        problem = pushed(problem, loading.push)
-    return problem
+            problem = pushed(problem, loading.push)
+        return problem
 
 
 def _shaking(shaking: Shaking | None, loading: Loading) -> Shaking | None:
@@ -76,9 +87,9 @@ def _shaking(shaking: Shaking | None, loading: Loading) -> Shaking | None:
         allowed = "left out, or --shake beside it: the ground is at rest"
         require(value is None or shaking is not None, f"--{name}", value, allowed)
     if shaking is not None and amplitude is not None:
-        shaking = shaking.with_amplitude(amplitude)
+        shaking = replace(shaking, amplitude=amplitude)
     if shaking is not None and duration is not None:
-        shaking = shaking.with_duration(duration)
+        shaking = replace(shaking, duration=duration)
     return shaking
 
 

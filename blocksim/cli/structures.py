@@ -3,34 +3,27 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from typing import Any
 
 from blocksim.arch.dimensions import require_unit_weight
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.cli.acting import Loading
+from blocksim.cli.built import Given
 from blocksim.cli.options import (
-    Given,
-    Loading,
     named_options,
     option_of,
     parameters_of,
+    refuse,
     require_given,
 )
 from blocksim.cli.road import loaded
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import read_file, toml_of
-from blocksim.kinds import KINDS, SOLID_KINDS, own_kind
-from blocksim.kinds.files import (
-    changed,
-    deepened,
-    is_drawing,
-    load_any,
-    shipped_structures,
-    structure_of,
-    weighed,
-    with_friction,
-)
-from blocksim.reading.drawing import ROLES, Reading
+from blocksim.kinds import KINDS, own_kind
+from blocksim.kinds.changes import edited
+from blocksim.kinds.files import is_drawing, load_structure, shipped_structures, structure_of
+from blocksim.reading.asked import ROLES, Reading
 
 LARGEST_PEEK = 1 << 20
 """Bytes of a TOML file that are looked at to tell a structure from a scenario."""
@@ -38,13 +31,13 @@ LARGEST_PEEK = 1 << 20
 
 def is_structure(scene: str | None) -> bool:
     """Tell a structure from a scenario of an arch: by its name, or by what is in the file."""
-    if scene in KINDS or scene in SOLID_KINDS or scene in shipped_structures():
+    if scene in KINDS or scene in shipped_structures():
         return True
     if scene is None:
         return False
     if _is_place(scene):
         return True
-    if is_drawing(scene) or scene.lower().endswith(".json"):
+    if is_drawing(scene) or scene.lower().endswith((".json", ".gltf")):
         return True
     if not scene.endswith(".toml"):
         return False
@@ -55,43 +48,36 @@ def is_structure(scene: str | None) -> bool:
     return "blocks" in table or "kind" in table
 
 
-def structure(scene: str, given: Given, loading: Loading) -> Problem | SpatialProblem:
+def structure(scene: str, given: Given, loading: Loading) -> Problem[Any]:
     """Read or make a structure and put on it what the options say.
 
     Raises
     ------
     InputError
-        If the file cannot be used, or an option is one of arches only.
+        If the file cannot be used, or what is built has no such parameter.
     """
-    for name, value in given.of_arches.items():
-        allowed = "left out: the file or --with says what is built"
-        require(value is None, option_of(name), value, allowed)
-    changes = parameters_of(given.parameters)
+    changes, sizes = parameters_of(given.parameters), given.sizes
+    for name, value in sizes.items():
+        require(name not in changes, option_of(name), value, f"left out where --with {name} is")
+    changes |= sizes
     heavy = given.unit_weight
     if heavy is not None:
         require_unit_weight("--unit-weight", heavy)
     density = None if heavy is None else 1000 * heavy
-    if scene in SOLID_KINDS or scene in KINDS or _is_place(scene):
-        require_given(mu=given.friction)
-        for option, value in given.drawn.items():
-            raise InputError(option, value, "left out: it is of drawings, and this is a kind")
+    if scene in KINDS or _is_place(scene):
+        require_given(" (for example --mu 0.7)", mu=given.friction)
+        refuse(given.drawn, why="left out: it is of drawings, and this is a kind")
     try:
-        if scene in SOLID_KINDS:
-            allowed = "left out: --with says the parameters of kinds in space"
-            require(given.depth is None, "--depth", given.depth, allowed)
-            maker = SOLID_KINDS[scene](friction=given.friction, density=density)
-            built = maker.but(**changes).problem()
-        elif scene in KINDS or _is_place(scene):
+        if scene in KINDS or _is_place(scene):
             own = () if scene in KINDS else (own_kind(scene),)
             name = own[0].name if own else scene
-            table = changed(with_friction({"kind": name}, given.friction or 0.0), changes)
-            said = table if density is None else weighed(table, density)
-            said = said if given.depth is None else deepened(said, given.depth, *own)
-            built = structure_of(said, *own)
+            table = edited({"kind": name}, changes, density, *own,
+                           friction=given.friction, depth=given.depth)  # fmt: skip
+            built = structure_of(table, *own)
         else:
             if is_drawing(scene):
                 require_given(mu=given.friction)
-            built = load_any(
+            built = load_structure(
                 scene,
                 changes,
                 density,
@@ -104,12 +90,10 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem | SpatialPr
         name = error.field.partition("[")[0]
         if name not in changes:
             raise
+        if name in sizes:
+            raise InputError(option_of(name), error.value, error.allowed) from None
         raise InputError("--with", f"{error.field}={error.value}", error.allowed) from None
-    if isinstance(built, Problem):
-        return loaded(built, given, loading)
-    from blocksim.cli.space import loaded_in_space
-
-    return loaded_in_space(built, given, loading)
+    return loaded(built, given, loading)
 
 
 def reading_of(unit: str | None, layer: list[str] | None, snap: float | None = None) -> Reading:

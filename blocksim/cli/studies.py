@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -9,18 +11,15 @@ import click
 
 from blocksim.cli.arguments import Option
 from blocksim.cli.output import progress, say
-from blocksim.cli.tables import (
-    chart_table,
-    structure_lines,
-    structure_table,
-    validation_lines,
-    validation_table,
-)
-from blocksim.cli.terminal import show
+from blocksim.cli.terminal import Table, show
 from blocksim.common.checks import Range
 from blocksim.common.files import make_folder
 from blocksim.engines import NAMES, engine_named
-from blocksim.studies.chart import cases, measure
+from blocksim.report.answerwords import ratio, signed
+from blocksim.report.structurewords import found_of, question_of, summary_of_structures
+from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
+from blocksim.studies.chart import Point, cases, measure, on_front
+from blocksim.studies.questions import StructureRow
 from blocksim.studies.structures import (
     structures,
     unasked_structures,
@@ -29,14 +28,14 @@ from blocksim.studies.structures import (
 from blocksim.studies.validate import scenarios, unasked
 from blocksim.studies.validate import validate as run_validation
 
+Results = Annotated[Path, Option(about="Folder for the results.", folder=True)]
+
 
 def validate(
     quick: Annotated[
         bool, Option(name="--quick/--full", about="Scenarios marked quick, or all of them.")
     ] = False,
-    out: Annotated[Path, Option(about="Folder for the results.", folder=True)] = Path(
-        "out/validate"
-    ),
+    out: Results = Path("out/validate"),
     methods: Annotated[
         str | None,
         Option(
@@ -52,7 +51,6 @@ def validate(
 
     Exit code 0 where all agrees, 1 where something does not.
     """
-    # matplotlib takes a second to import, which other commands need not wait for.
     from blocksim.report.tables import write_results
 
     engines = None if methods is None else [each.strip() for each in methods.split(",")]
@@ -79,15 +77,12 @@ def chart(
     quick: Annotated[
         bool, Option(name="--quick/--full", about="Two small arches, or five.")
     ] = False,
-    out: Annotated[Path, Option(about="Folder for the results.", folder=True)] = Path(
-        "out/chart"
-    ),
+    out: Results = Path("out/chart"),
     beside: Annotated[
         Path | None, Option(about="Points of another program: JSON like chart.json.")
     ] = None,
 ) -> None:
     """Chart the error of every method, from coarse to fine, against time and work."""
-    # matplotlib takes a second to import, which other commands need not wait for.
     from blocksim.report.chart import read_points, write_chart
 
     foreign = read_points(beside) if beside else []
@@ -97,3 +92,92 @@ def chart(
     paths = write_chart(points, out)
     show(chart_table(points))
     say("wrote " + ", ".join(str(path) for path in paths))
+
+
+def validation_table(rows: list[Validation]) -> Table:
+    """Lay out validation rows for a terminal: a line an arch, a column an engine."""
+    engines = list(dict.fromkeys(row.engine for row in rows))
+    headings = ("#", "scenario", "alpha", "mu", "n", "mode", "published", "limit", *engines)
+    words = {"scenario", "mode", *engines}
+    table = Table(*headings, right={*headings} - words, wrap=False)
+    for name, number in numbered(rows).items():
+        answers = {row.engine: row for row in rows if row.scenario == name}
+        row = next(iter(answers.values()))
+        table.add_row(
+            str(number),
+            name,
+            f"{math.degrees(row.half_angle):.1f}",
+            f"{row.mu:.4g}",
+            str(row.voussoirs),
+            "/".join(row.modes_published),
+            ratio(row.eta_published),
+            ratio(row.eta_limit),
+            *(_answer(answers.get(engine)) for engine in engines),
+        )
+    return table
+
+
+def validation_lines(rows: list[Validation], unasked: Sequence[Unasked] = ()) -> list[str]:
+    """Return how many rows agree, what does not, and where engines differ, in words."""
+    misses = [row for row in rows if row.miss]
+    right = f"{len(rows) - len(misses)} of {len(rows)}"
+    lines = [f"{right} agree with the exact answer in every respect"]
+    lines += [f"  {row.scenario}, {row.engine}: {row.miss} ({row.note})" for row in misses]
+    if len({row.engine for row in rows}) > 1:
+        apart = disagreements(rows)
+        lines.append(f"the engines disagree in {len(apart)} places")
+        lines += [f"  {each}" for each in apart]
+    return lines + [f"not asked of {each.words}" for each in unasked]
+
+
+def structure_table(rows: list[StructureRow]) -> Table:
+    """Lay out rows on structures for a terminal: a line an answer."""
+    headings = ("structure", "over", "known", "published", "method", "answer", "")
+    table = Table(*headings, right={"known", "published"}, wrap=False)
+    for row in rows:
+        wanted = "" if row.expected is None else f"{row.expected:.8g}"
+        known = row.expected_verdict.value if row.expected_verdict else wanted
+        first = row.method == "limit"
+        asked = (row.structure, row.question, known, row.published or "-")
+        said = (row.method, found_of(row), "!" if row.miss else "")
+        table.add_row(*(asked if first else ("", "", "", "")), *said)
+    return table
+
+
+def structure_lines(rows: list[StructureRow], unasked: Sequence[Unasked] = ()) -> list[str]:
+    """Return how many answers on structures agree, and what does not, in words."""
+    lines = [summary_of_structures(rows).removesuffix(".")]
+    lines += [
+        f"  {row.structure}, {question_of(row)}, {row.method}: {row.miss} ({row.note})"
+        for row in rows
+        if row.miss
+    ]
+    return lines + [f"not asked of {each.words}" for each in unasked]
+
+
+def chart_table(points: list[Point]) -> Table:
+    """Lay out what was measured for the chart, one line a bracket."""
+    numbers = ("value", "error", "s", "contact solves")
+    table = Table("arch", "method", "knob", *numbers, "", right=numbers, wrap=False)
+    best = on_front(points)
+    for point in points:
+        error = f"{point.error:.1e}" if math.isfinite(point.error) else "none"
+        table.add_row(
+            point.case,
+            point.method,
+            point.knob,
+            f"{point.value:.4g}",
+            error,
+            f"{point.time:.3g}",
+            f"{point.work:.1e}",
+            "on the front" if point in best else "",
+        )
+    return table
+
+
+def _answer(row: Validation | None) -> str:
+    """Return what one engine saw, and the error of its bracket."""
+    if row is None:
+        return "-"
+    error = "" if row.error is None else f" {signed(100 * row.error, 3)}%"
+    return f"{row.mode_observed or row.verdict or '-'}{error}{' !' if row.miss else ''}"

@@ -5,16 +5,22 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
-from blocksim.cli.options import Given, Loading, named_options, require_given
+from blocksim.cli.acting import Loading
+from blocksim.cli.built import Given
+from blocksim.cli.options import named_options, require_given
 from blocksim.cli.question import question
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 
 STREAM = "-"
 """What stands for JSON lines on standard input."""
+
+
+IN_PLANE = "x and y: in space there are check, bracket, simulate, render and report"
+"""What is accepted where blocks have to lie in the plane."""
 
 
 def is_many(scene: str) -> bool:
@@ -42,16 +48,13 @@ def problem_asked(
     loading: Loading,
     *,
     thick: bool = False,
-    sought: bool = False,
     **needed: object,
 ) -> Problem:
     """Return what is asked about in the plane; see `anything_asked`."""
     found = anything_asked(
-        scene, given, loading, spatial=False, thick=thick, sought=sought, **needed
+        scene, given, loading, spatial=False, thick=thick, sought=False, **needed
     )
-    if not isinstance(found, Problem):
-        from blocksim.kinds.files import IN_PLANE
-
+    if found.in_space:
         raise InputError("blocks", "three coordinates", IN_PLANE, where=scene)
     return found
 
@@ -65,14 +68,13 @@ def anything_asked(
     thick: bool = False,
     sought: bool = False,
     **needed: object,
-) -> Problem | SpatialProblem:
+) -> Problem[Any]:
     """Return what is asked about, in the plane or in space, and what the options put on it.
 
     Parameters
     ----------
     scene, given, thick, needed
         As of `question`.
-    loading : Loading
     spatial : bool
         Whether blocks of the plane are asked as prisms.
     sought : bool
@@ -85,7 +87,7 @@ def anything_asked(
         found = structure(scene, given, loading)
     else:
         found = _arch(scene, given, loading, thick=thick, sought=sought, **needed)
-    if isinstance(found, SpatialProblem):
+    if found.in_space:
         return found
     if not spatial:
         allowed = "left out: it is of blocks in space"

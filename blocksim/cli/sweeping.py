@@ -61,7 +61,7 @@ def sweep(
             write_parquet(out, out / "rows.parquet")
         if csv:
             write_csv(out, out / "rows.csv")
-    answer_with(summary_record(done), summary_lines(done, out), as_json=as_json)
+    answer_with(lambda: summary_record(done), lambda: summary_lines(done, out), as_json=as_json)
 
 
 def summary_record(done: Summary) -> dict[str, object]:

@@ -32,7 +32,6 @@ class Range:
     ----------
     low, high : float
         Both allowed, an infinite end is not.
-    unit : str
     above : bool
         Whether the low end is not allowed.
     whole : bool
@@ -143,6 +142,9 @@ MASS = Range(low=1e-36, high=1e36, unit="kg")
 INERTIA = Range(low=1e-48, high=1e48, unit="kg m2")
 FACTOR = Range(low=-1e9, high=1e9)
 """On live loads, on weights, and on motions of supports."""
+GRAVITY = Range(low=0.1, high=100, unit="m/s2")
+VELOCITY = Range(low=-1e4, high=1e4)
+"""Of blocks at the release [m/s], and of their rotation [rad/s]."""
 PUSH = Range(low=0, high=10, unit="g")
 """Sideways, over the weight of each block."""
 TURN = Range(low=-1e6, high=1e6, unit="deg")

@@ -50,9 +50,13 @@ def perhaps(name: str, known: Iterable[str]) -> str:
     name : str
         As it was given.
     known : iterable of str
+        Of those it may be itself, of which nothing is asked.
     """
     from difflib import get_close_matches
 
+    known = list(known)
+    if name in known:
+        return ""
     # Longer ones are no slip of the hand, and take long to compare.
     near = get_close_matches(name.lower(), known, 1) if len(name) <= LONGEST else []
     return f"; did you mean {near[0]}?" if near else ""

@@ -7,7 +7,7 @@ import math
 import os
 import re
 import stat
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager, suppress
 from errno import (
     EEXIST,
@@ -20,6 +20,7 @@ from errno import (
     ENOTSUP,
 )  # fmt: skip
 from importlib.resources import files
+from operator import methodcaller
 from pathlib import Path
 from secrets import token_hex
 from tempfile import TemporaryFile
@@ -80,7 +81,6 @@ def write_whole(path: AnyPath, write: Callable[[BinaryIO], object]) -> None:
 
     Parameters
     ----------
-    path : str or path
     write : callable
         Writes to the open binary file it is given.
 
@@ -96,11 +96,18 @@ def write_whole(path: AnyPath, write: Callable[[BinaryIO], object]) -> None:
     >>> write_whole("answer.txt", lambda file: file.write(b"stands"))
     """
     path = Path(path)
-    try:
+    with _writable(path):
         _require_plain(path)
         _put(path, write)
+
+
+@contextmanager
+def _writable(path: Path, allowed: str = "writable") -> Generator[None]:
+    """Say in one line why nothing can be written."""
+    try:
+        yield
     except OSError as error:
-        raise refused("--out", path, "writable", error) from None
+        raise refused("--out", path, allowed, error) from None
 
 
 def _put(path: Path, write: Callable[[BinaryIO], object]) -> None:
@@ -301,12 +308,9 @@ def require_place(path: Path) -> None:
     MachineError
         If the system cannot write it.
     """
-    try:
+    with _writable(path):
         _require_plain(path)
-        with TemporaryFile(dir=path.parent):
-            pass
-    except OSError as error:
-        raise refused("--out", path, "writable", error) from None
+        TemporaryFile(dir=path.parent).close()
 
 
 def make_folder(path: AnyPath) -> None:
@@ -320,9 +324,15 @@ def make_folder(path: AnyPath) -> None:
         If the system cannot create or write it.
     """
     path = Path(path)
-    try:
+    with _writable(path, "a writable folder"):
         path.mkdir(parents=True, exist_ok=True)
-        with TemporaryFile(dir=path):
-            pass
-    except OSError as error:
-        raise refused("--out", path, "a writable folder", error) from None
+        TemporaryFile(dir=path).close()
+
+
+def write_folder(folder: AnyPath, contents: Mapping[str, bytes]) -> list[Path]:
+    """Write files, by name, into a folder that is made where it is not there."""
+    folder = Path(folder)
+    make_folder(folder)
+    for name, content in contents.items():
+        write_whole(folder / name, methodcaller("write", content))
+    return [folder / name for name in contents]

@@ -6,19 +6,17 @@ import os
 import sys
 from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
-from functools import cached_property
+from functools import cached_property, partial
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from blocksim.common import interrupts
 from blocksim.common.errors import InputError, MissingPart
 
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
-
 Thing = TypeVar("Thing")
+Makers = Mapping[str, Callable[[], Thing]]
 
 
 class Later(Mapping[str, Thing]):
@@ -26,25 +24,28 @@ class Later(Mapping[str, Thing]):
 
     Parameters
     ----------
-    makers : mapping of str to callable
     beyond : mapping, optional
         Further things, asked only for names that `makers` has not, and where all are listed.
 
     Attributes
     ----------
     shipped : tuple of str
-        Names of `makers`.
+        Names of `makers` that are known from the start.
     """
 
     def __init__(
         self,
-        makers: Mapping[str, Callable[[], Thing]],
+        makers: Makers[Thing] | Callable[[], Makers[Thing]],
         beyond: Mapping[str, Thing] | None = None,
     ) -> None:
-        self._makers = dict(makers)
+        self._given = makers
         self._made: dict[str, Thing] = {}
         self._beyond: Mapping[str, Thing] = {} if beyond is None else beyond
-        self.shipped = tuple(makers)
+        self.shipped: tuple[str, ...] = () if callable(makers) else tuple(makers)
+
+    @cached_property
+    def _makers(self) -> Makers[Thing]:
+        return self._given() if callable(self._given) else self._given
 
     def __getitem__(self, name: str) -> Thing:
         """Return what has that name."""
@@ -70,7 +71,7 @@ class Later(Mapping[str, Thing]):
         return sum(1 for _ in self)
 
 
-class Installed(Mapping[str, Thing], Generic[Thing]):
+class Installed(Later[Thing]):
     """What other packages offer under an entry point group, by name.
 
     Packages are looked through when a name is first asked for, which takes tens of
@@ -83,36 +84,13 @@ class Installed(Mapping[str, Thing], Generic[Thing]):
     """
 
     def __init__(self, group: str) -> None:
-        self.group = group
+        def points() -> dict[str, Callable[[], Thing]]:
+            from importlib.metadata import entry_points
 
-    @cached_property
-    def _points(self) -> dict[str, EntryPoint]:
-        from importlib.metadata import entry_points
+            found = entry_points(group=group)
+            return {point.name: partial(loaded, group, point.value) for point in found}
 
-        return {point.name: point for point in entry_points(group=self.group)}
-
-    def __getitem__(self, name: str) -> Thing:
-        """Load what has that name.
-
-        Raises
-        ------
-        InputError
-            If it cannot be loaded.
-        """
-        point = self._points[name]
-        return loaded(self.group, point.value)
-
-    def __contains__(self, name: object) -> bool:
-        """Tell whether a package offers that name, without loading it."""
-        return name in self._points
-
-    def __iter__(self) -> Iterator[str]:
-        """Go through the names."""
-        return iter(self._points)
-
-    def __len__(self) -> int:
-        """Count the names."""
-        return len(self._points)
+        super().__init__(points)
 
 
 def loaded(what: str, place: str) -> Any:
@@ -172,7 +150,6 @@ class Library:
 
     Parameters
     ----------
-    name : str
     quiet : bool
         Whether to keep what it writes to standard error on import from the terminal.
     """
@@ -201,3 +178,17 @@ def _silence() -> Generator[None]:
     finally:
         os.dup2(kept, 2)
         os.close(kept)
+
+
+if TYPE_CHECKING:
+    from scipy import linalg as linalg
+    from scipy import optimize as optimize
+    from scipy import sparse as sparse
+    from scipy.sparse import csgraph as csgraph
+    from scipy.sparse import linalg as sparse_linalg  # pyright: ignore[reportUnusedImport]
+    from scipy.spatial import transform as transform
+else:
+    linalg, optimize = Library("scipy.linalg"), Library("scipy.optimize")
+    sparse, csgraph = Library("scipy.sparse"), Library("scipy.sparse.csgraph")
+    sparse_linalg = Library("scipy.sparse.linalg")
+    transform = Library("scipy.spatial.transform")

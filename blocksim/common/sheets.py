@@ -22,7 +22,6 @@ def write_sheet(file: BinaryIO, names: Sequence[str], rows: Iterable[Sequence[ob
 
     Parameters
     ----------
-    file : BinaryIO
     names : sequence of str
         Of the columns.
     rows : iterable of sequence

@@ -3,50 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from blocksim.common.files import AnyPath
 
 LONGEST = 60
 """Letters of a title in a `repr`."""
 
 
-class Renderer(Protocol):
-    """What draws and tells things; `blocksim.notebook` is one."""
-
-    def figure_of(self, shown: object) -> Figure:
-        """Draw a thing."""
-        ...
-
-    def dict_of(self, shown: object) -> dict[str, Any]:
-        """Return a thing as JSON has it."""
-        ...
-
-    def svg_of(self, shown: object) -> str:
-        """Return the drawing of a thing as an SVG element."""
-        ...
-
-    def html_of(self, shown: object) -> str:
-        """Return the words and the drawing of a thing."""
-        ...
-
-    def film_of(self, shown: object, path: AnyPath, **options: Any) -> None:
-        """Write a recording as a film."""
-        ...
+_renderers: list[Callable[[], Any]] = []
 
 
-_renderers: list[Callable[[], Renderer]] = []
-
-
-def show_by(renderer: Callable[[], Renderer]) -> None:
-    """Say what loads the renderer when something is first shown."""
+def show_by(renderer: Callable[[], Any]) -> None:
+    """Say what loads the renderer (`blocksim.notebook`) when something is first shown."""
     _renderers[:] = [renderer]
 
 
-def renderer() -> Renderer:
+def renderer() -> Any:
     """Return what draws and tells things."""
     return _renderers[0]()
 

@@ -51,7 +51,6 @@ def as_said(
     ----------
     schema : type
         A dataclass.
-    table : object
     where : str, optional
         The file.
     renamed : mapping of str to str

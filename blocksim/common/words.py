@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from unicodedata import category
 
 
@@ -10,11 +11,16 @@ def counted(number: int, noun: str) -> str:
 
     Parameters
     ----------
-    number : int
     noun : str
         In the singular; its plural ends in s.
     """
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def few(names: Sequence[str], most: int, between: str = ", ") -> str:
+    """List so many names, and say how many more there are."""
+    more = len(names) - most
+    return between.join(names[:most]) + (f" and {more} more" if more > 0 else "")
 
 
 def printable(text: str) -> str:
@@ -22,10 +28,6 @@ def printable(text: str) -> str:
 
     Titles, names of blocks and names of files may hold what clears a screen, writes the
     clipboard, turns the direction of reading or begins a line of its own.
-
-    Parameters
-    ----------
-    text : str
 
     Returns
     -------

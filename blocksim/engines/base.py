@@ -17,7 +17,6 @@ from typing import Protocol
 from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.later import Library as Library
 
 FRICTION_CAP = 1e3
@@ -61,6 +60,9 @@ class Settings:
         as the root of that allows.
     repeats : int
         Most repetitions, with finer sweeps, of a moving run that contacts started.
+    restitution : float
+        Share of the velocity with which blocks hit that they part with, where an engine lets
+        them bounce.
     farthest : float
         Distance from the origin beyond which the engine is given no block [size]: coordinates
         there round off by 2e-16 of it.
@@ -78,6 +80,7 @@ class Settings:
     penetration: float = math.inf
     accuracy: float = 1e-3
     repeats: int = 3
+    restitution: float = 0.0
     farthest: float = 1e4
 
 
@@ -95,6 +98,9 @@ class Quality:
         Most by which the energy was above that at the release, as a share of what fell.
     error : float or None
         How far corners were off by then, estimated [size] (`blocksim.simulation.repeating`).
+    late : float or None
+        How early or late they went by a hundredth of the size, estimated [sqrt(size/g)]; None
+        where they did not.
     known : float or None
         Time from which they may be off by more than a hundredth of the size
         [sqrt(size/g)]; None where there is none.
@@ -104,6 +110,7 @@ class Quality:
     penetration: float | None = None
     gain: float | None = None
     error: float | None = None
+    late: float | None = None
     known: float | None = None
 
 
@@ -162,6 +169,14 @@ class TakesForces(World, Protocol):
         ...
 
 
+class TakesVelocities(World, Protocol):
+    """A world whose blocks may begin in motion; see `Engine.shakes`."""
+
+    def push(self, velocities: Array) -> None:
+        """Set the velocities, shape (blocks, 3) [sqrt(size g), sqrt(g/size)]."""
+        ...
+
+
 class TellsForces(World, Protocol):
     """A world that tells what its joints carry; see `Engine.tells_forces`."""
 
@@ -201,7 +216,8 @@ class Method:
     moves_supports : bool
         Whether it can follow supports that move.
     adjustable : tuple of str
-        Settings that a user may give instead of what its rule says.
+        Settings that a user may give instead of what its rule says. With `accuracy` its motion
+        says how right it is.
     chart : mapping of str to tuple of float
         Settings from coarse to fine that the chart of error against time tries, by what is
         refined (`blocksim.studies.refinement`).
@@ -253,7 +269,7 @@ class Engine(Method):
     most_friction : float
         Friction above which the engine takes this instead.
     shakes : bool
-        Whether its ground can shake.
+        Whether its ground can shake, and blocks may begin in motion (`TakesVelocities`).
     finds_rest : bool
         Whether rest is found wherever it is possible, from any beginning.
     takes_forces, tells_forces : bool
@@ -286,7 +302,7 @@ class Engine(Method):
     rule: Callable[[Assembly], Settings]
     build: Callable[[Problem, Settings], World]
     rule_in_space: Callable[[SpatialAssembly], Settings] | None = None
-    build_in_space: Callable[[SpatialProblem, Settings], World] | None = None
+    build_in_space: Callable[[Problem[SpatialAssembly], Settings], World] | None = None
     most_friction: float = FRICTION_CAP
     shakes: bool = False
     finds_rest: bool = False
@@ -306,11 +322,6 @@ class Engine(Method):
     def is_static(self) -> bool:
         """Whether it answers without motion: no engine does."""
         return False
-
-    @property
-    def follows_accuracy(self) -> bool:
-        """Whether its motion can be asked for to an accuracy, and says how right it is."""
-        return "accuracy" in self.adjustable
 
     @property
     def version(self) -> str:

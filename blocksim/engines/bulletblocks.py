@@ -31,19 +31,17 @@ import math
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property
-from typing import NamedTuple
+from functools import partial
 
 import numpy as np
 
-from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, displacement
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly
 from blocksim.blocks.problem import Problem
-from blocksim.engines.boxes import EDGE, TURNS, Box, Frame, edge, plate
-from blocksim.engines.bulletparts import Built, Ends, met
+from blocksim.engines.boxes import EDGE, TURNS, Frame, edge, plate
+from blocksim.engines.bulletparts import Ends, Joints, Link, let_go, linked, met
 from blocksim.engines.bulletspace import SLOP, Space, State, friction_share
-from blocksim.engines.energy import Balance
 from blocksim.engines.faces import LEDGE, LEDGE_SHARE, Side, reaching, sides_of
-from blocksim.engines.solids import Solids, prisms
+from blocksim.engines.solids import Polygons, prisms
 
 OVERLAP = SLOP
 """Of two closed faces: they would sink until they overlap by it [size]."""
@@ -62,7 +60,7 @@ BESIDE = 1e-7
 """Distance from the plane from which blocks that meet are put back into it [size]."""
 
 
-class Planar:
+class Planar(Polygons):
     """The blocks of a problem in the plane as bodies: the parts that `bulletmotion` moves.
 
     Parameters
@@ -75,27 +73,11 @@ class Planar:
     turns = TURNS
 
     def __init__(self, problem: Problem, frame: Frame) -> None:
-        self.problem, self.assembly, self.frame = problem, problem.assembly, frame
+        super().__init__(problem)
+        self.frame = frame
         self.reach: Array = self.assembly.reach / self.assembly.size
         self.states = [self._at(index) for index in range(len(self.assembly.blocks))]
         self.breaking = MERGED if problem.is_planar else _breaking(self.assembly)
-
-    @property
-    def solids(self) -> Solids:
-        """Polygons, and from when on they may meet."""
-        return self._solids
-
-    @cached_property
-    def _solids(self) -> Solids:
-        return Solids(self.assembly)
-
-    def balance(self, poses: Array) -> Balance:
-        """Return what looks at the energy, from where blocks are let go."""
-        return Balance(self.problem, poses)
-
-    def displacement(self, moved: Array) -> float:
-        """Return the largest displacement of any corner."""
-        return float(displacement(moved, self.assembly))
 
     def loads(self, poses: Array) -> Array | None:
         """Return loads besides gravity, (blocks, 6); None where there are none."""
@@ -125,7 +107,7 @@ class Planar:
             at, along = self.frame.flat(np.array(place), np.array(shift))
             space.put(bodies[index], State(at, turn, along, spin))
 
-    def linked(self, space: Space, reaches: Array | None = None) -> Built:
+    def linked(self, space: Space, reaches: Array | None = None) -> tuple[list[int], Joints]:
         """Create a body with links for each block, and one for the support.
 
         Parameters
@@ -134,17 +116,10 @@ class Planar:
         reaches : (joints, 2) float, optional
             How far the sides of each joint reach into each other at its ends [size].
         """
-        boxes, bodies = _boxes(self.problem, reaches), list[int]()
-        ends: Ends = defaultdict(list)
-        for index in [*range(len(self.assembly.blocks)), SUPPORT]:
-            its = boxes[index]
-            shares = [friction_share(self.problem.friction[each.joint]) for each in its]
-            masses = _masses(self.problem, index)
-            body = space.linked([each.box for each in its], shares, self._at(index), masses)
-            for link, each in enumerate(its):
-                ends[each.joint].append((body, link, each.sense))
-            bodies.append(body)
-        return Built(bodies[:-1], met(space, ends))
+        built, masses = [*self.states, self._at(SUPPORT)], partial(_masses, self.problem)
+        links = _boxes(self.problem, reaches)
+        bodies, ends = linked(space, links, built, masses, self.problem.friction)
+        return bodies[:-1], met(space, ends)
 
     @property
     def can_be_layered(self) -> bool:
@@ -158,7 +133,7 @@ class Planar:
         is_one = not (problem.friction[between] != problem.mu).any()
         return problem.is_planar and is_one and problem.mu > 0
 
-    def layered(self, space: Space) -> Built:
+    def layered(self, space: Space) -> tuple[list[int], Joints]:
         """Build anew, of bodies without links, and those of the support one for each joint."""
         problem, mu = self.problem, friction_share(self.problem.mu)
         layers = _layers(self.assembly)
@@ -182,7 +157,7 @@ class Planar:
         joints = met(space, ends)
         space.step()
         space.pull(problem.gravity)
-        return Built(bodies[: len(blocks)], joints)
+        return bodies[: len(blocks)], joints
 
     def solid(self, space: Space, states: Sequence[State]) -> list[int]:
         """Build anew, blocks in given states as they are, what they stand on and the floor."""
@@ -194,22 +169,15 @@ class Planar:
         bodies = list[int]()
         for index, state in enumerate(states):
             text = prisms(polygons[index], float(assembly.depths[index]))
-            built, masses = (
-                State(state.place, self.frame.quaternion),
-                _masses(self.problem, index),
-            )
-            bodies.append(space.hulls(text, own, built, masses))
+            built = State(state.place, self.frame.quaternion)
+            bodies.append(space.hulls(text, own, built, _masses(self.problem, index)))
         # As deep as it is drawn.
         deep = float(assembly.depths.max())
         for polygon in self.solids.fixed:
             middle = polygon.mean(axis=0)
             space.hulls(prisms([polygon - middle], deep), own, self._of(middle))
         space.floor(own, self._of(np.array([0.0, self.solids.level])), [0.0, 1.0, 0.0])
-        space.step()
-        for body, state in zip(bodies, states, strict=True):
-            space.put(body, state)
-        space.pull(self.problem.gravity)
-        return bodies
+        return let_go(space, bodies, states, self.problem.gravity)
 
     def _at(self, index: int) -> State:
         """Return how the body of a block, or of the support, is built."""
@@ -229,18 +197,10 @@ def _masses(problem: Problem, index: int) -> list[float] | None:
     return [mass, *([LOCK, LOCK] if problem.is_planar else across), inertia]
 
 
-class Touching(NamedTuple):
-    """What touches on a body: a joint, 1 if on `after` and else -1, a box."""
-
-    joint: int
-    sense: float
-    box: Box
-
-
-def _boxes(problem: Problem, reaches: Array | None = None) -> dict[int, list[Touching]]:
+def _boxes(problem: Problem, reaches: Array | None = None) -> dict[int, list[Link]]:
     """Return what touches on each body; see `Planar.linked`."""
     assembly = problem.assembly
-    found: dict[int, list[Touching]] = defaultdict(list)
+    found: dict[int, list[Link]] = defaultdict(list)
     for joint, sides in enumerate(sides_of(assembly)):
         deep, pair = _depths(problem, sides), sides
         if reaches is not None:
@@ -250,7 +210,7 @@ def _boxes(problem: Problem, reaches: Array | None = None) -> dict[int, list[Tou
             origin = np.zeros(2) if at_rest else assembly.centres[side.body] / assembly.size
             turn = math.pi + TIE * (sense > 0)
             box = (edge if side.is_corner else plate)(side, depth, origin, OVERLAP, turn)
-            found[side.body].append(Touching(joint, sense, box))
+            found[side.body].append(Link(joint, sense, box))
     return found
 
 

@@ -13,20 +13,26 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from blocksim.blocks.assembly import SPATIAL, Array
 from blocksim.engines.base import Quality, Settings
 from blocksim.engines.boxes import unwound
-from blocksim.engines.bulletparts import Parts
 from blocksim.engines.bulletspace import SLOP, Space
+
+if TYPE_CHECKING:
+    from blocksim.engines.bulletblocks import Planar
+    from blocksim.engines.bulletsolids import Spatial
 
 PRESSED, SOFT = 1e-7, 10.0
 """How far the joint with most pressure reaches into itself where pressures are given [size],
 and stiffness of joints times the square of the step in which they are solved [mean mass]."""
 SETTLED = 1e-3
 """Acceleration from which on blocks that are pressed stay where they have given way to [g]."""
+STEP = 0.1
+"""The usual one of a moving run."""
 SWEEPS = 100
 """Most sweeps of a step, for each pair of blocks."""
 ACCURACY = 1e-5
@@ -51,12 +57,12 @@ class Moving:
 
     Parameters
     ----------
-    parts : Parts
+    parts : Planar or Spatial
         The blocks, as this engine needs them.
     settings : Settings
     """
 
-    def __init__(self, parts: Parts, settings: Settings) -> None:
+    def __init__(self, parts: Planar | Spatial, settings: Settings) -> None:
         self._parts, self._settings = parts, settings
         self._pairs = settings.sweeps / SWEEPS
         self._space = Space(parts.frame, parts.breaking)
@@ -66,6 +72,8 @@ class Moving:
         self._gains = np.zeros(count)
         self._last, self._rate = 0.0, np.zeros((count, SPATIAL))
         self._short, self._held = settings.step, 0
+        # A finer step is finer in its parts, too.
+        self._finer = STEP / settings.step
         self._bodies, self._joints = parts.linked(self._space)
         self._space.find_contacts()
         self._deepest = self._space.overlap()
@@ -145,7 +153,7 @@ class Moving:
         if not self._is_free:
             self._let_go()
         for _ in range(steps):
-            speed = self._parts.displacement(self._velocities())
+            speed = float(self._parts.assembly.displacement(self._velocities()))
             if not self._is_rubble:
                 self._parts.solids.update(self.poses())
                 if self._parts.solids.loose:
@@ -155,7 +163,8 @@ class Moving:
             if self._is_rubble:
                 self._tumble(speed)
                 continue
-            parts = min(max(1, math.ceil(speed * self._settings.step / TRAVEL)), FINEST)
+            way = speed * self._settings.step * self._finer
+            parts = min(max(1, math.ceil(way / TRAVEL)), FINEST)
             if self._is_layered and self._lifts():
                 self._is_layered = False
                 self._link()
@@ -165,8 +174,9 @@ class Moving:
             change = max(ACCURACY * step, SHARE * speed) / (RELAXATION * self._pairs)
             self._space.solve_by(step, self._settings.sweeps, change=change)
             before = self._stagger(step)
-            for _ in range(parts):
+            for _ in range(parts - 1):
                 self._step()
+            self._last_step()
             gained = self._velocities() - before
             self._gains, self._rate = self._turning(gained), gained / (parts * step)
 
@@ -188,20 +198,25 @@ class Moving:
         """Take a step of blocks that meet."""
         way = self._settings.step * (speed + self._settings.step)
         finest = self._settings.step / LONGEST_TUMBLE
-        parts = min(math.ceil(max(way / self._parts.solids.largest, finest)), MOST_PARTS)
+        parts = max(way / self._parts.solids.largest, finest) * self._finer
+        parts = min(math.ceil(parts), MOST_PARTS)
         # Impulses of an impact, taken for those of rest, would throw blocks.
         step = self._settings.step / parts
         self._space.solve_by(step, TUMBLE_SWEEPS, warm=0.0)
         self._stagger(step)
         for _ in range(parts - 1):
             self._step()
+        self._rate = self._last_step() / step
+        self._deepest = max(self._deepest, self._space.overlap())
+        self._parts.flatten(self._space, self._bodies, self.poses())
+
+    def _last_step(self) -> Array:
+        """Take a step, look at the energy, and return what velocities gain."""
         poses, before = self.poses(), self._velocities()
         self._step()
         after = self._velocities()
-        self._rate = (after - before) / step
         self._balance.look(poses, before, after)
-        self._deepest = max(self._deepest, self._space.overlap())
-        self._parts.flatten(self._space, self._bodies, self.poses())
+        return after - before
 
     def _step(self) -> None:
         """Take a step under gravity and loads."""
@@ -223,5 +238,4 @@ class Moving:
 
     def quality(self) -> Quality:
         """Tell how deep blocks have overlapped, as built and once they meet others."""
-        gain = self._balance.gain if self._is_rubble else None
-        return Quality(penetration=self._deepest, gain=gain)
+        return Quality(penetration=self._deepest, gain=self._balance.gain)

@@ -11,16 +11,16 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.engines.boxes import Box
-from blocksim.engines.bulletparts import Built, Ends, met
-from blocksim.engines.bulletspace import SLOP, Space, State, friction_share
+from blocksim.engines.bulletparts import Joints, Link, let_go, linked, met
+from blocksim.engines.bulletspace import NOTHING, SLOP, Space, State, friction_share
 from blocksim.engines.polyhedra import Polyhedra
 
 CORNER = 0.05
@@ -28,6 +28,8 @@ CORNER = 0.05
 BREAKING = 0.1
 """Bullet's breaking threshold, in units of a box."""
 DIAGONAL = np.ones(3) / math.sqrt(3.0)
+UNMOVED = State(NOTHING, (0.0, 0.0, 0.0, 1.0))
+"""How supports are built."""
 
 
 class Upright:
@@ -60,26 +62,13 @@ class Upright:
         return np.hstack([places, since.as_rotvec()])
 
 
-class _Link(NamedTuple):
-    """What touches on a body: a joint, 1 if on `after` and else -1, and a box."""
-
-    joint: int
-    sense: float
-    box: Box
-
-
 class Spatial(Polyhedra):
-    """The blocks of a problem in space as bodies; see `bulletparts.Parts`.
-
-    Parameters
-    ----------
-    problem : SpatialProblem
-    """
+    """The blocks of a problem in space as bodies; see `bulletmotion`."""
 
     breaking = BREAKING
     can_be_layered = False
 
-    def __init__(self, problem: SpatialProblem) -> None:
+    def __init__(self, problem: Problem[SpatialAssembly]) -> None:
         super().__init__(problem)
         self.turns = [3, 4, 5]
         self.frame = Upright(self.quaternions)
@@ -89,11 +78,6 @@ class Spatial(Polyhedra):
             State(place, turn)
             for place, turn in zip(centres, self.quaternions.tolist(), strict=False)
         ]
-
-    @property
-    def solids(self) -> Spatial:
-        """When blocks may meet others is known here."""
-        return self
 
     def loads(self, poses: Array) -> Array | None:
         """Return loads besides gravity, (blocks, 6), or None."""
@@ -106,11 +90,11 @@ class Spatial(Polyhedra):
     def flatten(self, space: Space, bodies: list[int], poses: Array) -> None:
         """Leave blocks where they are: there is no plane."""
 
-    def layered(self, space: Space) -> Built:
+    def layered(self, space: Space) -> tuple[list[int], Joints]:
         """Refuse: friction of bodies without links lies within pyramids."""
         raise NotImplementedError
 
-    def linked(self, space: Space, reaches: Array | None = None) -> Built:
+    def linked(self, space: Space, reaches: Array | None = None) -> tuple[list[int], Joints]:
         """Create a body with links for each block, and one for all supports.
 
         Parameters
@@ -119,23 +103,13 @@ class Spatial(Polyhedra):
         reaches : (points,) float, optional
             How far each point reaches into its plate [size].
         """
-        links, bodies = self._links(reaches), list[int]()
-        ends: Ends = defaultdict(list)
-        for index in [*range(len(self.assembly.blocks)), SUPPORT]:
-            its = links[index]
-            shares = [friction_share(self.problem.friction[each.joint]) for each in its]
-            built = State([0.0] * 3, [0.0, 0.0, 0.0, 1.0])
-            built = built if index == SUPPORT else self.states[index]
-            boxes = [each.box for each in its]
-            body = space.linked(boxes, shares, built, self._masses(index))
-            for link, each in enumerate(its):
-                ends[each.joint].append((body, link, each.sense))
-            bodies.append(body)
+        built, friction = [*self.states, UNMOVED], self.problem.friction
+        bodies, ends = linked(space, self._links(reaches), built, self._masses, friction)
         # What is not the plate's body touches the plate.
         for touch in self.touches:
             plate = bodies[touch.plate]
             ends[touch.joint].sort(key=lambda each: each[0] != plate)
-        return Built(bodies[:-1], met(space, ends))
+        return bodies[:-1], met(space, ends)
 
     def _masses(self, index: int) -> list[float] | None:
         """Return the mass of a block and its principal moments; a support has none."""
@@ -144,32 +118,25 @@ class Spatial(Polyhedra):
         mass, _, _, *moments = self.bodies.inertia[index].tolist()
         return [mass, *moments]
 
-    def _links(self, reaches: Array | None) -> dict[int, list[_Link]]:
+    def _links(self, reaches: Array | None) -> dict[int, list[Link]]:
         """Return what touches on each body; see `linked`."""
-        found: dict[int, list[_Link]] = defaultdict(list)
-        ways = np.zeros(sum(len(each.places) for each in self.touches))
-        ways = ways if reaches is None else reaches
-        first = 0
-        for touch in self.touches:
-            normal, own = touch.axes[:, 2], ways[first : first + len(touch.places)]
-            first += len(touch.places)
+        found: dict[int, list[Link]] = defaultdict(list)
+        for touch, ways in zip(self.touches, self.at_joints(reaches), strict=True):
+            normal = touch.normal
             middle = touch.places.mean(axis=0) + (SLOP / 2 - touch.half[2]) * normal
             plate = self._box(touch.plate, touch.half, middle, touch.axes)
-            found[touch.plate].append(_Link(touch.joint, -touch.sign, plate))
+            found[touch.plate].append(Link(touch.joint, -touch.sign, plate))
             side, stands = CORNER * touch.spread, _standing(normal)
-            for place, way in zip(touch.places, own.tolist(), strict=True):
+            for place, way in zip(touch.places, ways.tolist(), strict=True):
                 centre = place + (side * math.sqrt(3.0) / 2 - SLOP / 2 - way) * normal
                 box = self._box(touch.corners, [side / 2] * 3, centre, stands)
-                found[touch.corners].append(_Link(touch.joint, touch.sign, box))
+                found[touch.corners].append(Link(touch.joint, touch.sign, box))
         return found
 
     def _box(self, index: int, half: list[float], centre: Array, axes: Array) -> Box:
         """Return a box in the frame of a body."""
-        if index == SUPPORT:
-            return Box(half, centre.tolist(), Rotation.from_matrix(axes).as_quat().tolist())
-        origin, turn = self.bodies.built.centres[index], self.bodies.built.turns[index]
-        own = Rotation.from_matrix(turn.T @ axes).as_quat().tolist()
-        return Box(half, (turn.T @ (centre - origin)).tolist(), own)
+        place, turn = self.within(index, centre, axes)
+        return Box(half, place, turn.tolist())
 
     def solid(self, space: Space, states: Sequence[State]) -> list[int]:
         """Build anew, blocks in given states as they are, what they stand on and the floor."""
@@ -180,15 +147,10 @@ class Spatial(Polyhedra):
             space.hulls(text, own, State(state.place, state.turn), self._masses(index))
             for index, (text, state) in enumerate(zip(moving, states, strict=True))
         ]
-        still = State([0.0] * 3, [0.0, 0.0, 0.0, 1.0])
         for text in fixed:
-            space.hulls(text, own, still)
-        space.floor(own, still._replace(place=[0.0, 0.0, self.level]), [0.0, 0.0, 1.0])
-        space.step()
-        for body, state in zip(bodies, states, strict=True):
-            space.put(body, state)
-        space.pull(self.problem.gravity)
-        return bodies
+            space.hulls(text, own, UNMOVED)
+        space.floor(own, UNMOVED._replace(place=[0.0, 0.0, self.level]), [0.0, 0.0, 1.0])
+        return let_go(space, bodies, states, self.problem.gravity)
 
 
 def _standing(normal: Array) -> Array:

@@ -16,13 +16,16 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.base import Library
-from blocksim.engines.boxes import Box
+from blocksim.engines.boxes import Box, Frame
+
+if TYPE_CHECKING:
+    from blocksim.engines.bulletsolids import Upright
 
 bullet: Any = Library("pybullet", quiet=True)
 
@@ -66,26 +69,6 @@ class State(NamedTuple):
     spin: Sequence[float] = NOTHING
 
 
-class Framed(Protocol):
-    """Where the axes of an assembly lie in Bullet's frame."""
-
-    def vector(self, x: float, y: float, z: float) -> list[float]:
-        """Turn a vector of the assembly's axes into Bullet's."""
-        ...
-
-    def told(self, motion: Array) -> tuple[list[float], list[float]]:
-        """Return a motion, (6,) in columns of poses, or forces, as vectors of Bullet."""
-        ...
-
-    def motions(self, linear: Array, angular: Array) -> Array:
-        """Return velocities in columns of poses, (bodies, 6)."""
-        ...
-
-    def poses(self, places: Array, quaternions: Array) -> Array:
-        """Return places and orientations likewise."""
-        ...
-
-
 class _Client:
     """Bullet's functions, told in which space to act."""
 
@@ -106,12 +89,13 @@ class Space:
 
     Parameters
     ----------
-    frame : Framed
+    frame : Frame or Upright
+        Where the axes of an assembly lie in Bullet's frame.
     breaking : float
         Breaking threshold: points of contact closer than that replace each other.
     """
 
-    def __init__(self, frame: Framed, breaking: float) -> None:
+    def __init__(self, frame: Frame | Upright, breaking: float) -> None:
         self.frame, self._client = frame, _Client()
         self._begin(breaking)
 

@@ -65,12 +65,7 @@ def _let_go(space: Any) -> None:
 
 
 class Space:
-    """A pymunk space with one body for each block, and one shape for each side of a joint.
-
-    Parameters
-    ----------
-    problem : Problem
-    """
+    """A pymunk space with one body for each block, and one shape for each side of a joint."""
 
     def __init__(self, problem: Problem) -> None:
         self._problem, self._assembly = problem, problem.assembly

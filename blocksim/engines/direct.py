@@ -3,8 +3,8 @@
 How blocks go from place to place, and from impact to impact, is in `blocksim.engines.stepping`.
 
 A collapse goes on to the ground: blocks meet any others, what they stand on and the floor
-(`blocksim.engines.ground`), without bouncing. Forces at points of blocks move with them: what
-they do in a step is that of its middle, as for contacts.
+(`blocksim.engines.ground`), and bounce where `restitution` is given. Forces at points of blocks
+move with them: what they do in a step is that of its middle, as for contacts.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT, Array, Assembly
+from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.common.checks import require
 from blocksim.common.version import __version__
 from blocksim.engines.base import Engine, Quality, Settings, World
 from blocksim.engines.energy import Balance, energy
@@ -52,36 +52,28 @@ USUAL = Settings(
 )
 
 
-def rule(assembly: Assembly) -> Settings:  # noqa: ARG001 - a rule is given one
-    """Return the same settings for every assembly."""
-    return USUAL
+USUAL_IN_SPACE = replace(
+    USUAL, still=STILL_IN_SPACE, rest=REST_IN_SPACE, residual=RESIDUAL_IN_SPACE
+)
 
 
-def rule_in_space(assembly: SpatialAssembly) -> Settings:  # noqa: ARG001 - a rule is given one
-    """Return the same settings for every assembly in space."""
-    return replace(USUAL, still=STILL_IN_SPACE, rest=REST_IN_SPACE, residual=RESIDUAL_IN_SPACE)
-
-
-def blocks_in_space(problem: SpatialProblem, settings: Settings) -> World:
+def blocks_in_space(problem: Problem[SpatialAssembly], settings: Settings) -> World:
     """Return blocks in space, whose code is loaded where it is asked for."""
-    from blocksim.engines.solid.direct import SolidBlocks
+    from blocksim.engines.solid.stepping import SolidBlocks
+
+    bounces, allowed = settings.restitution, "0 in space: there direct lets no block bounce"
+    require(not bounces, "settings.restitution", bounces, allowed)
 
     return SolidBlocks(problem, settings)
 
 
 class Blocks(Stepping):
-    """Blocks, their poses and velocities.
-
-    Parameters
-    ----------
-    problem : Problem
-    settings : Settings
-    """
+    """Blocks, their poses and velocities."""
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
-        super().__init__(problem, settings.accuracy)
+        super().__init__(problem, settings.accuracy, settings.restitution)
         self._step = settings.step
-        self._balance = Balance(problem, self._poses)
+        self._balance = Balance.of(problem, self._poses)
 
     def hold(self, sweeps: int) -> Array:  # noqa: ARG002 - the protocol's
         """Solve the contacts of a step from rest; the blocks stay."""
@@ -169,11 +161,11 @@ ENGINE = Engine(
     remedy="pip install scipy",
     # It is blocksim's own.
     version_of=lambda: __version__,
-    rule=rule,
+    rule=lambda _: USUAL,
     build=Blocks,
-    rule_in_space=rule_in_space,
+    rule_in_space=lambda _: USUAL_IN_SPACE,
     build_in_space=blocks_in_space,
-    adjustable=("step", "accuracy", "still", "rest"),
+    adjustable=("step", "accuracy", "still", "rest", "restitution"),
     finest=1e-8,
     most_friction=math.inf,
     shakes=True,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
+from typing import Generic, TypeVar
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -12,6 +13,11 @@ from scipy.spatial.transform import Rotation
 from blocksim.blocks.assembly import PLANAR, SPATIAL, Array
 from blocksim.blocks.problem import Problem
 from blocksim.engines.boxes import TURNS
+
+Where = TypeVar("Where")
+"""Where blocks are: poses, or `solid.bodies.Place`."""
+FELL = 1e-9
+"""What counts as fallen [mean weights times the size]; the rest is round-off."""
 
 
 def energy(problem: Problem, poses: Array, velocities: Array) -> float:
@@ -39,54 +45,45 @@ def _kinetic(problem: Problem, poses: Array, velocities: Array) -> float:
 
 
 def _potential(problem: Problem, poses: Array) -> float:
-    pull = problem.pull(poses)
+    pull = problem.applied_forces(poses)
     potential = -float((pull[:, :2] * poses[:, :2]).sum())
     if poses.shape[1] == SPATIAL:
         potential -= float((pull[:, PLANAR] * poses[:, PLANAR]).sum())
-    if not problem.turns_pull:
+    if not problem.forces_turn:
         return potential
     # A force at a point does what its moment does about a block turned by a right angle.
     quarter = np.zeros(poses.shape[1])
     quarter[2] = math.pi / 2
-    return potential + float(problem.pull(poses + quarter)[:, 2].sum())
+    return potential + float(problem.applied_forces(poses + quarter)[:, 2].sum())
 
 
-class Balance:
+class Balance(Generic[Where]):
     """How far the energy has risen above that at the release.
 
     Parameters
     ----------
-    problem : Problem
-    poses : (blocks, 3 or 6) float
-        At the release.
+    potential, kinetic : callable
+        Energies: of where blocks are, and of that and their velocities.
+    poses : (blocks, 3 or 6) float, or Place
+        Where blocks are at the release, as these functions are told it.
     """
 
-    def __init__(self, problem: Problem, poses: Array) -> None:
-        self._begin(partial(_potential, problem), partial(_kinetic, problem), poses)
-
-    @classmethod
-    def of(
-        cls,
-        potential: Callable[[Array], float],
-        kinetic: Callable[[Array, Array], float],
-        poses: Array,
-    ) -> Balance:
-        """Look at energies that are told from poses, and from poses and velocities."""
-        found = cls.__new__(cls)
-        found._begin(potential, kinetic, poses)
-        return found
-
-    def _begin(
+    def __init__(
         self,
-        potential: Callable[[Array], float],
-        kinetic: Callable[[Array, Array], float],
-        poses: Array,
+        potential: Callable[[Where], float],
+        kinetic: Callable[[Where, Array], float],
+        poses: Where,
     ) -> None:
         self._potential, self._kinetic = potential, kinetic
         self._first = self._lowest = potential(poses)
         self._gain = 0.0
 
-    def look(self, poses: Array, before: Array, after: Array) -> None:
+    @staticmethod
+    def of(problem: Problem, poses: Array) -> Balance[Array]:
+        """Look at the energies of a problem of the plane, from poses at the release on."""
+        return Balance(partial(_potential, problem), partial(_kinetic, problem), poses)
+
+    def look(self, poses: Where, before: Array, after: Array) -> None:
         """Take note of blocks at a place, with their velocities on the way to it and from it.
 
         Engines of impulses move by velocities that are those halfway between two places.
@@ -101,4 +98,4 @@ class Balance:
     def gain(self) -> float:
         """Most the energy has been above that at the release, as a share of what has fallen."""
         fallen = self._first - self._lowest
-        return self._gain / fallen if fallen > 0 else 0.0
+        return self._gain / fallen if fallen > FELL else 0.0

@@ -7,14 +7,14 @@ space, and how they are held and moved in `mujocomotion`.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from blocksim.blocks.assembly import Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.engines.base import Engine, Settings, World
 from blocksim.engines.mujocoblocks import Planar, library
-from blocksim.engines.mujocomotion import CHATTER, STILL, Moving
+from blocksim.engines.mujocomotion import CHATTER, STEP, STILL, Moving
 
 HOLD_SWEEPS = 20_000
 """Most time steps of the onset test."""
@@ -22,48 +22,37 @@ UNAIDED = 10_000
 """After how many of them it begins anew, with forces of limit analysis."""
 HOLD_IN_SPACE, UNAIDED_IN_SPACE = 6_000, 1_500
 """The same in space."""
-STEP, PARTS = 0.01, 33
-"""Time step of a moving run, and MuJoCo's own steps in it."""
+PARTS = 33
+"""MuJoCo's own steps in one of a moving run."""
 SHORT = 0.1
 """Length of a joint below which steps are finer [size]."""
 NOISE = 1e-5
 CLOSING = 1e-3
 
 
+USUAL = Settings(
+    step=STEP,
+    sweeps=PARTS,
+    hold_sweeps=HOLD_SWEEPS,
+    unaided=UNAIDED,
+    still=STILL,
+    noise=NOISE,
+    closing=CLOSING,
+    residual=CHATTER,
+)
+
+
 def rule(assembly: Assembly) -> Settings:
     """Choose finer steps where joints are short; contacts are chosen on building."""
-    return Settings(
-        step=STEP,
-        sweeps=round(PARTS * max(1.0, math.sqrt(SHORT / assembly.shortest))),
-        hold_sweeps=HOLD_SWEEPS,
-        unaided=UNAIDED,
-        still=STILL,
-        noise=NOISE,
-        closing=CLOSING,
-        residual=CHATTER,
-    )
+    return replace(USUAL, sweeps=round(PARTS * max(1.0, math.sqrt(SHORT / assembly.shortest))))
 
 
 def rule_in_space(assembly: SpatialAssembly) -> Settings:  # noqa: ARG001 - a rule is given one
     """Choose as for joints that are not short; forces are given earlier, as steps are dear."""
-    return Settings(
-        step=STEP,
-        sweeps=PARTS,
-        hold_sweeps=HOLD_IN_SPACE,
-        unaided=UNAIDED_IN_SPACE,
-        still=STILL,
-        noise=NOISE,
-        closing=CLOSING,
-        residual=CHATTER,
-    )
+    return replace(USUAL, hold_sweeps=HOLD_IN_SPACE, unaided=UNAIDED_IN_SPACE)
 
 
-def bodies(problem: Problem, settings: Settings) -> World:
-    """Return blocks of the plane."""
-    return Moving(Planar(problem), settings)
-
-
-def blocks_in_space(problem: SpatialProblem, settings: Settings) -> World:
+def blocks_in_space(problem: Problem[SpatialAssembly], settings: Settings) -> World:
     """Return blocks in space, whose code is loaded where it is asked for."""
     from blocksim.engines.mujocosolids import Spatial
 
@@ -77,7 +66,7 @@ ENGINE = Engine(
     remedy="pip install 'mujoco-core>=4.0.1'",
     version_of=lambda: str(library.__version__),
     rule=rule,
-    build=bodies,
+    build=lambda problem, settings: Moving(Planar(problem), settings),
     rule_in_space=rule_in_space,
     build_in_space=blocks_in_space,
     finest=1e-3,

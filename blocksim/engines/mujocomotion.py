@@ -31,17 +31,22 @@ The plane is MuJoCo's x and y; a block has three degrees of freedom, x, y and ro
 from __future__ import annotations
 
 import math
-from typing import Any, Protocol
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.base import Quality, Settings
-from blocksim.engines.energy import Balance
 from blocksim.engines.mujocoblocks import RUBBLE_PERIOD, TOLERANCE, library
 from blocksim.engines.mujocostep import coulomb_step
-from blocksim.engines.solids import Meeting
 
+if TYPE_CHECKING:
+    from blocksim.engines.mujocoblocks import Planar
+    from blocksim.engines.mujocosolids import Spatial
+
+STEP = 0.01
+"""The usual one of a moving run."""
 HOLD_STEP = 1e-5
 """Time step of the onset test."""
 LEAST_SWEEPS = 100
@@ -71,63 +76,19 @@ GENTLE, FIRMER = 20.0, 0.8
 and by how much it shrinks in each step."""
 
 
-class Parts(Protocol):
-    """Blocks as bodies of MuJoCo, in the plane or in space; coordinates are MuJoCo's."""
-
-    @property
-    def masses(self) -> Array:
-        """Inertia of each velocity."""
-        ...
-
-    @property
-    def solids(self) -> Meeting:
-        """When blocks may meet others than those of their joints."""
-        ...
-
-    def joined(self, reaches: Array | None = None) -> Any:
-        """Return a model of bodies that touch at joints, which may reach into each other."""
-        ...
-
-    def rubble(self) -> Any:
-        """Return a model of bodies that may meet any other."""
-        ...
-
-    def ways(self, pressures: Array) -> Array:
-        """Return how far contacts give way, over that of a free block by its weight."""
-        ...
-
-    def poses(self, places: Array, zero: Array) -> Array:
-        """Return poses at coordinates, less those taken for the places as built."""
-        ...
-
-    def placed(self, poses: Array) -> Array:
-        """Return coordinates at poses."""
-        ...
-
-    def rates(self, places: Array, moved: Array) -> Array:
-        """Return velocities in columns of poses."""
-        ...
-
-    def loads(self, places: Array) -> Array | None:
-        """Return loads besides gravity on each coordinate, or None."""
-        ...
-
-    def displacement(self, moved: Array) -> float:
-        """Return the largest displacement of any corner."""
-        ...
-
-    def balance(self, poses: Array) -> Balance:
-        """Return what looks at the energy."""
-        ...
-
-
 class Moving:
     """A MuJoCo model with one body for each block, and its state.
 
     A sweep is one of MuJoCo's steps, which solves the contacts to their end.
+
+    Parameters
+    ----------
+    parts : Planar or Spatial
+        The blocks, as this engine needs them; coordinates are MuJoCo's.
+    settings : Settings
     """
 
-    def __init__(self, parts: Parts, settings: Settings) -> None:
+    def __init__(self, parts: Planar | Spatial, settings: Settings) -> None:
         self._blocks = parts
         self._part = settings.step / settings.sweeps
         self._parts = settings.sweeps
@@ -144,7 +105,7 @@ class Moving:
         self._choose(HOLD_STEP, LOOSE)
         # With the hardest contacts the blocks as built fall a little: that tells of all others.
         library.mj_forward(self._model, self._state)
-        fall = parts.displacement(self._rates(self._state.qacc))
+        fall = float(parts.assembly.displacement(self._rates(self._state.qacc)))
         self._force = max(1.0, float(self._state.efc_force.max(initial=0.0)))
         self._softness = min(max(SAG * HARDEST * (1 - fall) / fall, HARDEST), HARD)
         self._choose(HOLD_STEP, LOOSE)
@@ -164,7 +125,7 @@ class Moving:
             self._softness = softness
             self._press(HOLD_STEP)
             library.mj_forward(self._model, self._state)
-            if self._blocks.displacement(self._rates(self._starts())) < STILL:
+            if self._blocks.assembly.displacement(self._rates(self._starts())) < STILL:
                 break
 
     def _press(self, step: float) -> None:
@@ -261,12 +222,15 @@ class Moving:
             self._zero = self._state.qpos.copy()
             self._model.opt.tolerance = TOLERANCE
             self._choose(self._part, 0.0)
-        for _ in range(steps):
+        for left in range(steps, 0, -1):
             if self._is_rubble:
                 self._tumble()
                 continue
             self._pull()
-            library.mj_step(self._model, self._state, self._parts)
+            last = left == 1
+            library.mj_step(self._model, self._state, self._parts - last)
+            if last:
+                self._look(lambda: library.mj_step(self._model, self._state))
             self._blocks.solids.update(self.poses())
             if self._blocks.solids.loose:
                 self._make_solid()
@@ -276,6 +240,8 @@ class Moving:
         self._is_rubble = True
         placed, velocities = self._blocks.placed(self.poses()), self._state.qvel.copy()
         self._model = self._blocks.rubble()
+        # A finer step is finer in its parts, too.
+        self._model.opt.timestep *= self._step / STEP
         self._state = library.MjData(self._model)
         self._state.qpos[:], self._state.qvel[:] = placed, velocities
         self._zero = self._model.qpos0.copy()
@@ -288,11 +254,15 @@ class Moving:
         self._pull()
         for _ in range(max(1, round(self._step / length)) - 1):
             coulomb_step(self._model, self._state)
-        poses, before = self.poses(), self._rates(self._state.qvel)
-        coulomb_step(self._model, self._state)
-        self._balance.look(poses, before, self._rates(self._state.qvel))
+        self._look(lambda: coulomb_step(self._model, self._state))
         gaps = self._state.contact.dist
         self._deepest = max(self._deepest, -float(gaps.min(initial=0.0)))
+
+    def _look(self, step: Callable[[], None]) -> None:
+        """Take a step, and look at the energy."""
+        poses, before = self.poses(), self._rates(self._state.qvel)
+        step()
+        self._balance.look(poses, before, self._rates(self._state.qvel))
 
     def poses(self) -> Array:
         """Return centres of mass and rotations, less how far contacts had given way at rest."""
@@ -301,9 +271,8 @@ class Moving:
     def quality(self) -> Quality:
         """Tell how far accelerations held at rest were from steady."""
         residual = self._scatter if self._steady else math.inf
-        if not self._is_rubble:
-            return Quality(residual=residual)
-        return Quality(residual=residual, penetration=self._deepest, gain=self._balance.gain)
+        deepest = self._deepest if self._is_rubble else None
+        return Quality(residual=residual, penetration=deepest, gain=self._balance.gain)
 
 
 def _impedance(softness: float) -> float:

@@ -11,14 +11,13 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.engines.base import FRICTION_CAP
 from blocksim.engines.mujocoblocks import (
-    RUBBLE_RATIO,
-    RUBBLE_STEP,
     compiled,
+    let_touch,
     library,
-    look_of,
+    rubble_of,
     spec_of,
+    with_body,
 )
 from blocksim.engines.polyhedra import Polyhedra
 
@@ -29,32 +28,20 @@ ORDER = [3, 0, 1, 2]
 
 
 class Spatial(Polyhedra):
-    """The blocks of a problem in space as free bodies; see `mujoco.Parts`."""
+    """The blocks of a problem in space as free bodies; see `mujocomotion`."""
 
     @property
     def masses(self) -> Array:
         """Inertia of each velocity: along the axes, and about a body's own."""
         return self.bodies.inertia.ravel()
 
-    @property
-    def solids(self) -> Spatial:
-        """When blocks may meet others is known here."""
-        return self
-
     def _spec(self) -> tuple[Any, list[Any]]:
         """Return a model of free bodies, without shapes, and the bodies."""
-        spec, found = spec_of(self.problem.gravity), list[Any]()
+        spec, found = spec_of(self.problem.gravity, self.masses), list[Any]()
         turns = self.quaternions[:, ORDER]
         for index, (mass, _, _, *moments) in enumerate(self.bodies.inertia.tolist()):
-            body = spec.worldbody.add_body(
-                pos=self.bodies.built.centres[index].tolist(),
-                quat=turns[index].tolist(),
-                mass=mass,
-                inertia=moments,
-                ipos=[0.0, 0.0, 0.0],
-                iquat=[1.0, 0.0, 0.0, 0.0],
-                explicitinertial=True,
-            )
+            centre = self.bodies.built.centres[index].tolist()
+            body = with_body(spec, mass, moments, pos=centre, quat=turns[index].tolist())
             body.add_freejoint()
             found.append(body)
         return spec, found
@@ -69,81 +56,50 @@ class Spatial(Polyhedra):
         """
         spec, bodies = self._spec()
         bodies.append(spec.worldbody)
-        ways = np.zeros(sum(len(each.places) for each in self.touches))
-        ways = ways if reaches is None else reaches
         silent = {"contype": 0, "conaffinity": 0}
-        first = 0
-        for touch in self.touches:
-            own = ways[first : first + len(touch.places)]
-            first += len(touch.places)
-            normal = touch.axes[:, 2]
-            plate = touch.places.mean(axis=0) - touch.half[2] * normal
-            centre, turn = self._within(touch.plate, plate, touch.axes)
+        for touch, ways in zip(self.touches, self.at_joints(reaches), strict=True):
+            plate = touch.places.mean(axis=0) - touch.half[2] * touch.normal
+            centre, turn = self.within(touch.plate, plate, touch.axes)
             bodies[touch.plate].add_geom(
                 name=f"plate {touch.joint}", type=library.mjtGeom.mjGEOM_BOX,
-                size=touch.half, pos=centre, quat=turn, **silent,
+                size=touch.half, pos=centre, quat=turn[ORDER].tolist(), **silent,
             )  # fmt: skip
-            mu = min(float(self.problem.friction[touch.joint]), FRICTION_CAP)
-            ball = BALL * touch.spread
-            for at, (place, way) in enumerate(zip(touch.places, own.tolist(), strict=True)):
-                centre, _ = self._within(
-                    touch.corners, place + (ball - way) * normal, np.eye(3)
+            mu, ball = self.problem.friction[touch.joint], BALL * touch.spread
+            for at, (place, way) in enumerate(zip(touch.places, ways.tolist(), strict=True)):
+                centre, _ = self.within(
+                    touch.corners, place + (ball - way) * touch.normal, np.eye(3)
                 )
                 name = f"corner {touch.joint} {at}"
                 bodies[touch.corners].add_geom(
                     name=name, type=library.mjtGeom.mjGEOM_SPHERE,
                     size=[ball, 0.0, 0.0], pos=centre, **silent,
                 )  # fmt: skip
-                spec.add_pair(
-                    geomname1=f"plate {touch.joint}",
-                    geomname2=name,
-                    condim=3,
-                    friction=[mu] * 2 + [0.0] * 3,
-                )
+                let_touch(spec, f"plate {touch.joint}", name, mu)
         return compiled(spec)
-
-    def _within(
-        self, index: int, centre: Array, axes: Array
-    ) -> tuple[list[float], list[float]]:
-        """Return a place and axes in the frame of a body, the axes as a quaternion."""
-        if index == SUPPORT:
-            own, place = axes, centre
-        else:
-            turn = self.bodies.built.turns[index].T
-            own, place = turn @ axes, turn @ (centre - self.bodies.built.centres[index])
-        turned = Rotation.from_matrix(own).as_quat()[ORDER]
-        return place.tolist(), turned.tolist()
 
     def ways(self, pressures: Array) -> Array:
         """Return how far contacts give way, (points,): as their force, and what moves there."""
         inertia, place = self.bodies.inertia, self.bodies.built
-        found, first = np.zeros_like(pressures), 0
-        for touch in self.touches:
-            at = slice(first, first + len(touch.places))
-            first += len(touch.places)
+        found = np.zeros_like(pressures)
+        for touch, free in zip(self.touches, self.at_joints(found), strict=True):
             for index in {touch.plate, touch.corners} - {SUPPORT}:
                 arms = touch.places - place.centres[index]
-                about = np.cross(arms, touch.axes[:, 2]) @ place.turns[index]
-                found[at] += 1 / inertia[index, 0] + (about**2 / inertia[index, 3:]).sum(axis=1)
+                about = np.cross(arms, touch.normal) @ place.turns[index]
+                free[:] += 1 / inertia[index, 0] + (about**2 / inertia[index, 3:]).sum(axis=1)
         return pressures * found
 
     def rubble(self) -> Any:
         """Return a model of the blocks as they are, what they stand on and the floor."""
         spec, bodies = self._spec()
-        spec.option.timestep, spec.option.impratio = RUBBLE_STEP, RUBBLE_RATIO
-        look, hulls = look_of(self.problem.mu), self.bodies.hulls
-        for index, (owner, corners) in enumerate(zip(hulls.owner, hulls.corners, strict=True)):
-            if owner == SUPPORT and hulls.support[index] < 0:
-                continue
-            spec.add_mesh(name=f"mesh {index}", uservert=corners.ravel())
-            body = spec.worldbody if owner == SUPPORT else bodies[owner]
-            # A mesh is moved to its centre of mass unless it is told where it lies.
-            body.add_geom(type=library.mjtGeom.mjGEOM_MESH, meshname=f"mesh {index}", **look)
-        spec.worldbody.add_geom(
-            type=library.mjtGeom.mjGEOM_PLANE, size=[0.0, 0.0, 1.0],
-            pos=[0.0, 0.0, self.level], **look,
-        )  # fmt: skip
-        return spec.compile()
+        hulls = self.bodies.hulls
+        known = [
+            (spec.worldbody if owner == SUPPORT else bodies[owner], corners)
+            for owner, support, corners in zip(
+                hulls.owner, hulls.support, hulls.corners, strict=True
+            )
+            if owner != SUPPORT or support >= 0
+        ]
+        return rubble_of(spec, known, {"pos": [0.0, 0.0, self.level]}, self.problem.mu)
 
     def poses(self, places: Array, zero: Array) -> Array:
         """Return centres and rotation vectors since they were built, (blocks, 6)."""

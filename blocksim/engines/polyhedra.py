@@ -10,20 +10,19 @@ polyhedra they are, on their supports and a floor.
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple, cast
+from typing import NamedTuple, Self
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.blocks.space.assembly import FaceJoint
-from blocksim.blocks.space.parting import displacement_in_space
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.assembly import FaceJoint, SpatialAssembly
 from blocksim.blocks.space.polyhedron import frame
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.engines.energy import Balance
-from blocksim.engines.solid.between import body_of, sides_of
+from blocksim.engines.solid.between import as_built
 from blocksim.engines.solid.bodies import Bodies, Place
-from blocksim.engines.solid.meeting import meet, near
+from blocksim.engines.solids import LARGEST
 
 SQUARE = 1e-6
 """Cosine from 1 up to which a face lies along a joint."""
@@ -35,8 +34,6 @@ FREE = 0.05
 """Displacement up to which joints are all that touches, less where others are near [size]."""
 TOUCHING = 1e-6
 """Gap up to which what has no joint touches along a rim as it was built [size]."""
-LARGEST = 0.004
-"""Way in a step, in units of a block's least extent, that keeps overlaps small."""
 
 
 class Touch(NamedTuple):
@@ -66,6 +63,11 @@ class Touch(NamedTuple):
     spread: float
 
     @property
+    def normal(self) -> Array:
+        """Of the plate, towards the block with the corners, (3,)."""
+        return self.axes[:, 2]
+
+    @property
     def half(self) -> list[float]:
         """Half extents of the plate."""
         wide = (1 + BEYOND) * self.spread
@@ -77,10 +79,6 @@ class Polyhedra:
 
     Poses are centres [size] and rotation vectors since blocks were built, (blocks, 6).
 
-    Parameters
-    ----------
-    problem : SpatialProblem
-
     Attributes
     ----------
     loose : bool
@@ -89,13 +87,18 @@ class Polyhedra:
         Way in a step that keeps overlaps small [size].
     """
 
-    def __init__(self, problem: SpatialProblem) -> None:
+    def __init__(self, problem: Problem[SpatialAssembly]) -> None:
         self.problem, self.assembly = problem, problem.assembly
         self.bodies = Bodies(problem)
         self.built = self.bodies.poses(self.bodies.built)
         hulls = self.bodies.hulls
         self.largest = LARGEST * float(hulls.thickness[hulls.owner != SUPPORT].min())
         self.loose = False
+
+    @property
+    def solids(self) -> Self:
+        """When blocks may meet others is known here."""
+        return self
 
     @property
     def quaternions(self) -> Array:
@@ -121,22 +124,18 @@ class Polyhedra:
         found[:, 3:] = np.einsum("bij,bj->bi", place.turns[:-1], found[:, 3:])
         return found
 
-    def displacement(self, moved: Array) -> float:
-        """Return the largest displacement of any corner."""
-        return float(displacement_in_space(moved, self.assembly))
-
-    def balance(self, poses: Array) -> Balance:
+    def balance(self, poses: Array) -> Balance[Array]:
         """Return what looks at the energy, from where blocks are let go."""
 
         def potential(poses: Array) -> float:
-            return self.bodies.energy(self.place(poses), np.zeros_like(poses))[0]
+            return self.bodies.potential(self.place(poses))
 
         def kinetic(poses: Array, velocities: Array) -> float:
-            own, place = velocities.copy(), self.place(poses)
-            own[:, 3:] = np.einsum("bji,bj->bi", place.turns[:-1], own[:, 3:])
-            return self.bodies.energy(place, own)[1]
+            own = velocities.copy()
+            own[:, 3:] = np.einsum("bji,bj->bi", self.place(poses).turns[:-1], own[:, 3:])
+            return self.bodies.kinetic(own)
 
-        return Balance.of(potential, kinetic, poses)
+        return Balance(potential, kinetic, poses)
 
     @cached_property
     def touches(self) -> tuple[Touch, ...]:
@@ -153,11 +152,21 @@ class Polyhedra:
             plate, corners = corners, plate
         places = joint.points / self.assembly.size
         spread = float(np.linalg.norm(places - places.mean(axis=0), axis=1).max())
-        first, _ = frame(joint.normal)
         normal = sign * joint.normal
-        second = cast("Array", np.cross(normal, first))
-        axes = np.stack([first, second, normal], axis=1)
+        axes = np.vstack([frame(normal), normal]).T
         return Touch(at, plate, corners, sign, places, axes, max(spread, LEAST))
+
+    def at_joints(self, values: Array | None) -> list[Array]:
+        """Return values at the points of joints, (points,), for each touch; 0 where None."""
+        counts = [len(each.places) for each in self.touches]
+        every = np.zeros(sum(counts)) if values is None else values
+        ends = np.cumsum(counts).tolist()
+        return [every[end - count : end] for count, end in zip(counts, ends, strict=True)]
+
+    def within(self, index: int, place: Array, axes: Array) -> tuple[list[float], Array]:
+        """Return a place in the frame of a body, and its axes there as a quaternion, (4,)."""
+        turn, origin = self.bodies.built.turns[index].T, self.bodies.built.centres[index]
+        return (turn @ (place - origin)).tolist(), Rotation.from_matrix(turn @ axes).as_quat()
 
     def _has_face(self, joint: FaceJoint, sign: float) -> bool:
         """Tell whether the block on a side of a joint has a face along it."""
@@ -174,20 +183,14 @@ class Polyhedra:
     @cached_property
     def _free(self) -> float:
         """How far blocks may move before they meet others [size]."""
-        hulls = self.bodies.hulls.placed(*self.bodies.built)
-        reach = np.full(len(hulls.owner), FREE)
-        pairs = near(hulls, reach)
-        points = meet(hulls, pairs, reach[pairs].sum(axis=1))
-        joined = {tuple(sorted(sides_of(each))) for each in self.assembly.joints}
-        bodies = body_of(hulls)
-        sides = np.sort(np.stack([bodies[points.before], bodies[points.after]]), axis=0)
-        apart = np.array([tuple(each) not in joined for each in sides.T.tolist()], dtype=bool)
-        gaps = points.gaps[apart & (points.gaps > TOUCHING)]
+        points, joined = as_built(self.bodies, FREE)
+        gaps = points.gaps[~joined & (points.gaps > TOUCHING)]
         return float(gaps.min(initial=2 * FREE)) / 2
 
     def update(self, poses: Array) -> None:
         """Look where blocks are, and whether they may meet others."""
-        self.loose = self.loose or self.displacement(poses - self.built) > self._free
+        moved = float(self.assembly.displacement(poses - self.built))
+        self.loose = self.loose or moved > self._free
 
     def texts(self) -> tuple[list[str], list[str]]:
         """Return hulls as texts of .obj files: of blocks in their frames, and of supports."""

@@ -13,18 +13,17 @@ import numpy as np
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.common.checks import require
 from blocksim.engines.base import Engine, Settings, World
 from blocksim.engines.boxes import Frame
 from blocksim.engines.bulletblocks import Planar
-from blocksim.engines.bulletmotion import SWEEPS, Moving
+from blocksim.engines.bulletmotion import STEP, SWEEPS, Moving
 from blocksim.engines.bulletspace import MOST_FRICTION
 
 UNTURNED = Frame()
 
 DEEPEST = 1.5e-6
 """Overlap of blocks as built from which they are not trusted [size]."""
-STEP = 0.1
 SHORT, SHORTEST = 0.1, 1e-3
 """Length of a joint below which errors shrink more slowly, and shortest measured [size]."""
 HOLD_SWEEPS = 600
@@ -34,6 +33,8 @@ LEAST_HOLD = 600_000
 UNAIDED = 0.1
 """Share of these sweeps before forces of equilibrium are given, where no joint is short:
 springs on a short joint give way too easily, and never come to rest."""
+MOST_WORK = 2e8
+"""Sweeps of a step times blocks from which a step of heaps and walls takes minutes."""
 SWEEPS_IN_SPACE, HOLD_IN_SPACE, UNAIDED_IN_SPACE = 1000, 300_000, 30_000
 """Most sweeps in space: of a step for each block, of the onset test, and of it unaided."""
 STILL = 1e-5
@@ -50,19 +51,28 @@ def rule(assembly: Assembly) -> Settings:
     pairs = _pairs(assembly)
     hold_sweeps = max(LEAST_HOLD, round(HOLD_SWEEPS * pairs))
     # Rows of blocks get there by themselves, and in springs a tall stack rocks.
-    joints = assembly.joint_arrays
-    inner = (joints.before != SUPPORT) & (joints.after != SUPPORT)
-    is_row = bool((np.abs(joints.before - joints.after)[inner] <= 1).all())
-    helped = assembly.shortest >= SHORT and not is_row
+    helped = assembly.shortest >= SHORT and not _is_row(assembly)
+    unaided = round(UNAIDED * hold_sweeps) if helped else None
+    return _settings(round(SWEEPS * pairs), hold_sweeps, unaided)
+
+
+def _settings(sweeps: int, hold_sweeps: int, unaided: int | None) -> Settings:
     return Settings(
         step=STEP,
-        sweeps=round(SWEEPS * pairs),
+        sweeps=sweeps,
         hold_sweeps=hold_sweeps,
-        unaided=round(UNAIDED * hold_sweeps) if helped else None,
+        unaided=unaided,
         still=STILL,
         noise=NOISE,
         penetration=DEEPEST,
     )
+
+
+def _is_row(assembly: Assembly) -> bool:
+    """Tell whether each block has joints with the one before and the one after it only."""
+    joints = assembly.joint_arrays
+    inner = (joints.before != SUPPORT) & (joints.after != SUPPORT)
+    return bool((np.abs(joints.before - joints.after)[inner] <= 1).all())
 
 
 def _pairs(assembly: Assembly) -> float:
@@ -72,19 +82,11 @@ def _pairs(assembly: Assembly) -> float:
 
 def rule_in_space(assembly: SpatialAssembly) -> Settings:
     """Choose sweeps for blocks in space, which are held by many joints: fewer for each pair."""
-    blocks = len(assembly.blocks)
-    return Settings(
-        step=STEP,
-        sweeps=round(SWEEPS_IN_SPACE * (blocks + 1)),
-        hold_sweeps=HOLD_IN_SPACE,
-        unaided=UNAIDED_IN_SPACE,
-        still=STILL,
-        noise=NOISE,
-        penetration=DEEPEST,
-    )
+    sweeps = round(SWEEPS_IN_SPACE * (len(assembly.blocks) + 1))
+    return _settings(sweeps, HOLD_IN_SPACE, UNAIDED_IN_SPACE)
 
 
-def blocks_in_space(problem: SpatialProblem, settings: Settings) -> World:
+def blocks_in_space(problem: Problem[SpatialAssembly], settings: Settings) -> World:
     """Return blocks in space, whose code is loaded where it is asked for."""
     from blocksim.engines.bulletsolids import Spatial
 
@@ -104,6 +106,14 @@ class Bodies(Moving):
     """
 
     def __init__(self, problem: Problem, settings: Settings, frame: Frame = UNTURNED) -> None:
+        work = settings.sweeps * len(problem.assembly.blocks)
+        require(
+            work <= MOST_WORK or _is_row(problem.assembly),
+            "sweeps a step times blocks",
+            work,
+            f"at most {MOST_WORK:g}: short joints ask pybullet for more "
+            "(--method direct, or fewer by --set sweeps=)",
+        )
         self._plane = Planar(problem, frame)
         super().__init__(self._plane, settings)
 

@@ -10,7 +10,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from blocksim.blocks.assembly import Array, Assembly, displacement
+from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine, Quality, Settings
 from blocksim.engines.chipmunk import Space
@@ -79,11 +79,14 @@ class _World:
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
         self._problem, self._assembly, self._settings = problem, problem.assembly, settings
-        self._shaken = problem.shaking is not None
+        self._shaken = problem.is_moving
         self._space = Space(problem)
-        self._balance = Balance(problem, self.poses())
+        self._balance = Balance.of(problem, self.poses())
         self._penetration = self._time = 0.0
-        self._last, self._rate = settings.step, np.zeros((len(self._assembly.blocks), 3))
+        self._last = settings.step
+        # A finer step is finer in its parts, too.
+        self._finer = rule(problem.assembly).step / settings.step
+        self._rate = self._starts = np.zeros((len(self._assembly.blocks), 3))
         self._unseen, self._ahead = 1, 0
 
     def hold(self, sweeps: int) -> Array:
@@ -92,7 +95,8 @@ class _World:
         self._space.step(self._settings.step, sweeps)
         velocities = self._space.velocities()
         self._space.set_velocities(np.zeros_like(velocities))
-        return velocities / self._settings.step
+        self._starts = velocities / self._settings.step
+        return self._starts
 
     def begin(self, forces: Array) -> None:
         """Write the impulses of given forces into the contacts."""
@@ -108,12 +112,15 @@ class _World:
 
     def advance(self, steps: int) -> None:
         """Let the blocks move, in parts of a step once they may meet."""
-        for _ in range(steps):
+        for left in range(steps, 0, -1):
             if self._space.is_solid:
                 self._space.part()
                 self._tumble()
-            else:
-                self._turn()
+                continue
+            before = self._space.velocities() if left == 1 else None
+            self._turn()
+            if before is not None:
+                self._balance.look(self.poses(), before, self._space.velocities())
 
     def _turn(self) -> None:
         """Take a step of blocks that touch at joints only."""
@@ -121,14 +128,15 @@ class _World:
         space, step = self._space, self._settings.step
         before = space.velocities() if space.solids.loose else None
         parts = SHAKEN_PARTS if self._shaken and self._speed() > MOVES else 1
+        self._last = step / parts
         for _ in range(parts):
-            self._go(step / parts, self._settings.sweeps)
+            self._go(self._last, self._settings.sweeps)
         if before is not None:
             self._rate = (space.velocities() - before) / step
             space.make_solid()
 
     def _speed(self) -> float:
-        return float(displacement(self._space.velocities(), self._assembly))
+        return float(self._assembly.displacement(self._space.velocities()))
 
     def _watch(self) -> None:
         """Look where blocks are, as soon as they may have moved far enough to meet others."""
@@ -144,8 +152,8 @@ class _World:
     def _tumble(self) -> None:
         """Take a step of blocks that may meet, in parts."""
         space, step = self._space, self._settings.step
-        speed = self._speed() + step
-        parts = min(math.ceil(speed * step / space.solids.largest), MOST_PARTS)
+        way = (self._speed() + step) * step * self._finer
+        parts = min(math.ceil(way / space.solids.largest), MOST_PARTS)
         parts = max(parts, SHAKEN_PARTS) if self._shaken else parts
         part = step / parts
         # Velocities are those half a step ahead: what has been gained by then is less now.
@@ -194,9 +202,15 @@ class _World:
             space.step(step, sweeps)
             sweeps *= 2
             before, found = found, space.velocities()
-            change = float(displacement(found - before, self._assembly))
+            change = float(self._assembly.displacement(found - before))
             if change < max(self._settings.still * step, CHANGE * self._speed()):
                 break
+
+    def push(self, velocities: Array) -> None:
+        """Set the velocities, shape (blocks, 3)."""
+        # Its velocities are those half a step ahead.
+        ahead = self._starts * self._settings.step / SHAKEN_PARTS / 2
+        self._space.set_velocities(velocities + ahead)
 
     def poses(self) -> Array:
         """Return centres of mass and rotations."""
@@ -212,9 +226,8 @@ class _World:
 
     def quality(self) -> Quality:
         """Tell how deep blocks that meet have overlapped; Chipmunk does not tell more."""
-        if not self._space.is_solid:
-            return Quality()
-        return Quality(penetration=self._penetration, gain=self._balance.gain)
+        deepest = self._penetration if self._space.is_solid else None
+        return Quality(penetration=deepest, gain=self._balance.gain)
 
 
 ENGINE = Engine(

@@ -10,14 +10,16 @@ those of `direct` (`contact.neighbours`).
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import Protocol
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import PLANAR, Array, Assembly
+from blocksim.blocks.problem import Problem
 from blocksim.engines.contact.geometry import Geometry
 from blocksim.engines.contact.neighbours import TIGHT, Neighbours
+from blocksim.engines.energy import Balance
 from blocksim.engines.ground import ground_level, standing
 
 FLOOR = 100.0
@@ -29,23 +31,8 @@ SHARPEST = 0.05
 """Of one and the cosine between two faces, where the corner between them is set back."""
 
 
-class Meeting(Protocol):
-    """When blocks may meet others than those of their joints: `Solids`, or `Polyhedra`."""
-
-    loose: bool
-    largest: float
-
-    def update(self, poses: Array) -> object:
-        """Look where blocks are."""
-        ...
-
-
 class Solids:
     """The polygons of an assembly, and which of them may meet.
-
-    Parameters
-    ----------
-    assembly : Assembly
 
     Attributes
     ----------
@@ -120,6 +107,22 @@ class Solids:
         if second < len(self.moving) and self.moving[first][0] == self.moving[second][0]:
             return False
         return not any(self.holds[joint] for joint in self._joints.get((first, second), ()))
+
+
+class Polygons:
+    """Blocks of a problem of the plane: energy, and when they may meet others."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem, self.assembly = problem, problem.assembly
+
+    @cached_property
+    def solids(self) -> Solids:
+        """Polygons, and from when on they may meet."""
+        return Solids(self.assembly)
+
+    def balance(self, poses: Array) -> Balance[Array]:
+        """Return what looks at the energy, from where blocks are let go."""
+        return Balance.of(self.problem, poses)
 
 
 def prisms(polygons: list[Array], depth: float) -> str:

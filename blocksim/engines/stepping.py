@@ -11,6 +11,7 @@ the same is pushed apart, which changes no velocity.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -18,9 +19,10 @@ from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
-from blocksim.engines.contact import ContactProblem, Neighbours, Solution, Touch
+from blocksim.engines.contact import Solution, Touch
 from blocksim.engines.contact.coulomb import OPEN, STICKS
 from blocksim.engines.contact.events import first_closing
+from blocksim.engines.placed import Placed
 
 RESIDUAL = 1e-7
 UNSOLVED = 1e-4
@@ -46,8 +48,9 @@ SHARP = 1e-2
 the velocity of the impact."""
 LOCATED = 1e-10
 """Overlap at an impact that is none [size]."""
-ROUNDS, MOST_PARTS = 5, 4
-"""Most looks for one moment, and most impacts in a step, before it is one of first order."""
+ROUNDS, MOST_PARTS, FEW, CROWD = 5, 4, 4, 32
+"""Most looks for one moment; most impacts in a step, before the rest of it and some steps after
+it are of first order: twice as many each time it happens again, one less where it does not."""
 LEAST = 1e-9
 """Share of a step that is none."""
 SHORT = 0.1
@@ -55,16 +58,16 @@ SHORT = 0.1
 REGAIN = 1.0
 """Share of a small gap or overlap that is made up for in a step."""
 DEEP = 1e-5
-"""Overlap that is pushed apart at once [size]."""
+"""Overlap that a step makes up for at most [size]."""
 FAR = 1e3
 """Velocity that a contact taken for open cannot lose in a step, over those there are."""
 AT_REST, MOVES = 1e-9, 1e-6
 """Velocity of blocks at rest [sqrt(size g)], and acceleration that begins a motion [g]."""
-NO_GUESS: tuple[NDArray[np.int64] | None, Solution | None] = None, None
-"""Pairs, and what their contacts do, where no more is known than of the last step."""
+Passing = NDArray[np.bool_]
+"""Of contacts, shape (joints, 2)."""
 
 
-class Stepping:
+class Stepping(Placed):
     """Poses and velocities of blocks, carried on by steps.
 
     Parameters
@@ -72,61 +75,64 @@ class Stepping:
     problem : Problem
     accuracy : float
         Share by which motion may be off.
+    restitution : float
+        Share of the velocity with which blocks hit that they part with (Newton's).
     """
 
-    def __init__(self, problem: Problem, accuracy: float) -> None:
-        self._asked, assembly = problem, problem.assembly
-        self._mass = assembly.masses
-        self._accuracy = accuracy
-        self._mu, self._friction = problem.mu, problem.friction
-        self._reach = assembly.reach / assembly.size
-        self._neighbours = Neighbours(assembly)
-        self._keys = self._neighbours.keys
-        self._joints = len(assembly.joints)
-        self._poses: Array = assembly.built[:-1]
-        self._problem = self._new_problem()
-        self._looked: Array = self._poses
-        self._velocities: Array = np.zeros_like(self._poses)
-        self._turning, self._time = problem.turns_pull, 0.0
-        self._free = self._still = problem.pull() / self._mass
-        self._solution: Solution | None = None
-        self._guess = NO_GUESS
-        self._seen: tuple[Array, NDArray[np.int64], Touch] | None = None
+    def __init__(self, problem: Problem, accuracy: float, restitution: float) -> None:
+        super().__init__(problem)
+        self._accuracy, self._restitution = accuracy, restitution
         self._speeding = np.zeros_like(self._poses)
-        self._usual = self._residual = self._penetration = 0.0
+        self._usual = self._penetration = 0.0
         self._way: float = 0.0
+        self._crowded, self._crowd = 0, FEW
 
     def _move(self, step: float) -> None:
-        """Go on for a time, from impact to impact."""
+        """Go on from impact to impact; by steps of first order where they crowd."""
         self._usual = left = step
-        parts = 0
+        parts = MOST_PARTS if self._crowded else 0
+        if self._crowded:
+            self._crowded -= 1
         while left > LEAST * step:
-            if self._residual > UNSOLVED:
+            if not self._residual <= UNSOLVED:
                 # A step that cannot be solved was the last: the blocks stay.
                 return
-            left -= self._part(left, located=parts < MOST_PARTS)
+            if parts < MOST_PARTS:
+                left -= self._part(left)
+            else:
+                left -= self._solved(self._closing, left)[1]
+                self._push_apart()
             parts += 1
+            if parts == MOST_PARTS:
+                self._crowd = self._crowded = min(2 * self._crowd, CROWD)
+        if parts < MOST_PARTS:
+            self._crowd = max(FEW, self._crowd - 1)
 
-    def _part(self, step: float, *, located: bool) -> float:
+    def _part(self, step: float) -> float:
         """Take a step, or what of it comes before the first impact; return its length."""
         before = vars(self).copy()
-        passing, halvings = self._smooth(step), HALVINGS
-        while halvings and self._residual > max(RESIDUAL, before["_residual"]):
+        passing, step = self._solved(self._smooth, step)
+        if passing.any():
+            if self._fastest(passing) * step > MATTERS * self._accuracy:
+                taken = self._to_impact(before, step, passing)
+                if taken is not None:
+                    return taken
             vars(self).update(before)
-            step, halvings = step / 2, halvings - 1
-            passing = self._smooth(step)
-        if not passing.any():
-            if self._residual <= UNSOLVED:
-                self._push_apart()
-            return step
-        if located and self._fastest(passing) * step > MATTERS * self._accuracy:
-            taken = self._to_impact(before, step, passing)
-            if taken is not None:
-                return taken
-        vars(self).update(before)
-        if self._closing(step):
-            self._push_apart()
+            _, step = self._solved(self._closing, step)
+        self._push_apart()
         return step
+
+    def _solved(self, take: Callable[[float], Passing], step: float) -> tuple[Passing, float]:
+        """Take a step, halved until it is solved; return what passed, and its length."""
+        before = vars(self).copy()
+        found = take(step)
+        for _ in range(HALVINGS):
+            if self._residual <= max(RESIDUAL, before["_residual"]):
+                break
+            vars(self).update(before)
+            step /= 2
+            found = take(step)
+        return found, step
 
     def _to_impact(
         self, before: dict[str, object], step: float, passing: Passing
@@ -148,9 +154,10 @@ class Stepping:
                 return 0.0 if self._impact(near) else None
             # What contacts do in a part of a step is what they did in all of it.
             self._guess = found
-            passing = self._smooth(step) & (self._ends[0] < -near)
-            if self._residual > RESIDUAL:
+            passing = self._smooth(step)
+            if not self._residual <= RESIDUAL:
                 return None
+            passing &= self._ends[0] < -near
             if not passing.any():
                 return step if self._impact(near) else None
         return None
@@ -168,6 +175,7 @@ class Stepping:
         self._shake(step)
         touch = self._touch(self._looked, step)
         start = self._contacts()
+        touch = self._neighbours.followed(touch, self._looked, start)
         rate = self._rates(start.rows, self._velocities)
         shut = self._is_shut(start.gap, rate[:, :2])
         rates = self._rates(touch.rows, self._velocities)
@@ -188,8 +196,9 @@ class Stepping:
         self._advance(step, step * solution.acceleration, 0.5)
         if step > SHORT * self._usual:
             self._speeding = solution.acceleration
-        end = self._contacts()
+        end = self._neighbours.followed(self._contacts(), self._poses, start)
         self._ends = end.gap, self._rates(end.rows, self._velocities)[:, :2]
+        self._ended = end
         passes = end.gap < np.minimum(0.0, start.gap) - CLOSED
         return ~shut & passes & (self._ends[1] < 0)
 
@@ -207,7 +216,7 @@ class Stepping:
     def _look(self, step: float) -> None:
         """See what is closed, and what approaches, where the blocks are."""
         self._touch(self._poses, step)
-        found = self._contacts()
+        found = self._ended = self._contacts()
         self._ends = found.gap, self._rates(found.rows, self._velocities)[:, :2]
         self._shut = self._is_shut(*self._ends)
 
@@ -219,11 +228,6 @@ class Stepping:
         if self._solution is not None:
             stays |= (self._solution.contacts != OPEN) & (gap <= PRESSED)
         return stays
-
-    def _speeds(self) -> Array:
-        """Return the largest velocity of each block's corners, at most, shape (blocks,)."""
-        speed: Array = np.hypot(*self._velocities[:, :2].T)
-        return speed + np.abs(self._velocities[:, 2]) * self._reach
 
     def _turn(self, start: Touch, middle: Touch, step: float) -> Array:
         """Return by how much rows change from the middle to the end of a step."""
@@ -238,15 +242,17 @@ class Stepping:
     def _impact(self, near: float) -> bool:
         """Let velocities jump so that nothing closes further; tell whether they could."""
         gap, rate = self._ends
-        shut = self._shut | ((gap <= near) & (rate < 0))
+        # What closes a moment later hits as well, or the order would be that of round-off.
+        shut = self._shut | ((gap <= max(near, SHUT)) & (rate < 0))
         hits = shut & ~self._shut
         if not hits.any():
             return True
         speed = -float(rate[hits].min())
-        touch = self._contacts()
+        touch = self._ended
         if len(self._smooth_joints):
             touch.rows[self._smooth_joints, 2:] = 0.0
         rates = self._rates(touch.rows, self._velocities) / speed
+        rates[:, :2][hits] *= 1 + self._restitution
         rates[:, :2][~shut] += FAR * (1 + float(np.abs(rates).max()))
         last = self._solution
         assert last is not None  # noqa: S101
@@ -266,8 +272,8 @@ class Stepping:
         self._solution = replace(last, contacts=found.contacts)
         return True
 
-    def _closing(self, step: float) -> bool:
-        """Take a step of first order, if it is solved: what is open closes, not passes."""
+    def _closing(self, step: float) -> Passing:
+        """Take a step of first order, in which what is open closes and does not pass."""
         self._drive(step)
         self._looked = self._poses + step / 2 * self._velocities
         self._pull()
@@ -275,12 +281,12 @@ class Stepping:
         touch = self._touch(self._looked, step)
         rates = self._rates(touch.rows, self._velocities)
         gap = touch.gap - step / 2 * rates[:, :2]
-        rates[:, :2] += np.where(gap > self._closed(touch), gap, 0.0) / step
+        gap = np.where(np.abs(gap) > self._closed(touch), gap, 0.0)
+        rates[:, :2] += np.maximum(gap, -DEEP) / step
         solution = self._solve(touch, rates / step, PRECISION)
-        if not solution.residual <= UNSOLVED:
-            return False
-        self._advance(step, step * solution.acceleration, 1.0)
-        return True
+        if solution.residual <= UNSOLVED:
+            self._advance(step, step * solution.acceleration, 1.0)
+        return np.zeros(gap.shape, dtype=np.bool_)
 
     def _advance(self, step: float, gained: Array, share: float) -> None:
         """Go on with velocities that gain, and with a share of that on the way."""
@@ -291,14 +297,21 @@ class Stepping:
 
     def _push_apart(self) -> None:
         """Move blocks that overlap apart, as little as contact and friction allow."""
+        if not self._residual <= UNSOLVED:
+            return
         touch = self._contacts()
         gap = touch.gap
         deep = -float(gap.min(initial=0.0))
-        if deep > DEEP and self._solution is not None:
+        if (gap < self._deepest).any() and self._solution is not None:
             rates = np.zeros((len(gap), 4))
             rates[:, :2] = gap / deep
             nothing = np.zeros_like(self._poses)
-            guess = replace(self._solution, acceleration=nothing)
+            guess = replace(
+                self._solution,
+                acceleration=nothing,
+                forces=np.zeros_like(rates),
+                contacts=np.where(gap < 0, STICKS, OPEN).astype(np.int8),
+            )
             found = self._problem.solve(touch.rows, rates, nothing, guess, PRECISION)
             if found.residual <= UNSOLVED:
                 self._poses = self._poses + deep * found.acceleration
@@ -311,75 +324,3 @@ class Stepping:
         if self._solution is not None:
             none[self._solution.contacts != OPEN] += min(self._way**2, BENT)
         return none
-
-    def _drive(self, step: float) -> None:
-        """Set the velocities of what is moved; here nothing is."""
-
-    def _pull(self) -> None:
-        """Find the accelerations without contact, which change as blocks with loads turn."""
-        if self._turning:
-            self._free = self._asked.pull(self._looked) / self._mass
-
-    def _shake(self, step: float) -> None:
-        """Add what the ground's acceleration does in a step to the accelerations."""
-        if self._asked.shaking is not None:
-            start, self._time = self._time, self._time + step
-            across = self._asked.shaken(start, self._time) - self._asked.gravity
-            self._free = (self._free if self._turning else self._still).copy()
-            self._free[:, :2] += across[:2]
-
-    def _touch(self, poses: Array, step: float) -> Touch:
-        """Find the contacts; what is known of those that stay is kept."""
-
-        def reach() -> float:
-            fastest = max(1.0, float(np.abs(self._free[:, :2]).max()))
-            return step * (float(self._speeds().max()) + step * fastest)
-
-        touch = self._neighbours.touch(poses, reach)
-        keys = self._neighbours.keys
-        if keys is not self._keys and not np.array_equal(keys, self._keys):
-            if self._solution is not None:
-                self._solution = self._solution.carried(self._keys, keys)
-            self._keys = keys
-            self._problem = self._new_problem()
-        # Friction never sees a slip that is not in the rows.
-        if len(self._smooth_joints):
-            touch.rows[self._smooth_joints, 2:] = 0.0
-        return touch
-
-    def _contacts(self) -> Touch:
-        """Find the contacts of the pairs known, where the blocks are."""
-        seen = self._seen
-        if seen is None or seen[0] is not self._poses or seen[1] is not self._keys:
-            seen = self._poses, self._keys, self._neighbours.again(self._poses)
-            self._seen = seen
-        return seen[2]
-
-    def _new_problem(self) -> ContactProblem:
-        before, after = self._neighbours.before, self._neighbours.after
-        self._pairs = np.stack([before, after], axis=1)
-        held = self._keys < self._joints
-        friction = np.full(len(self._keys), self._mu)
-        friction[held] = self._friction[self._keys[held]]
-        self._smooth_joints = np.flatnonzero(friction == 0)
-        return ContactProblem(before, after, self._mass, friction, self._poses[:, :2])
-
-    def _rates(self, rows: Array, velocities: Array) -> Array:
-        """Return velocities along rows, shape (joints, 4)."""
-        of_joints = self._problem.bands.of_joints(velocities.ravel())
-        return np.matmul(rows, of_joints[:, :, None])[:, :, 0]
-
-    def _solve(self, touch: Touch, rates: Array, precision: float) -> Solution:
-        self._rows = touch.rows
-        keys, guess = self._guess
-        if guess is None or keys is not self._keys:
-            guess = self._solution
-        solution = self._problem.solve(touch.rows, rates, self._free, guess, precision)
-        self._guess, self._solution = NO_GUESS, solution
-        # Unlike max, this keeps nan.
-        self._residual = float(np.maximum(self._residual, solution.residual))
-        return solution
-
-
-Passing = NDArray[np.bool_]
-"""Of contacts, shape (joints, 2)."""

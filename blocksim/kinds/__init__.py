@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from functools import partial
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from blocksim.common.errors import InputError
 from blocksim.common.later import Installed, Later, loaded_here
 
 if TYPE_CHECKING:
-    from blocksim.blocks.maker import Maker
-    from blocksim.blocks.space.maker import SolidMaker
+    from blocksim.blocks.maker import Kind
 
 
 def _kind(place: str) -> Any:
@@ -34,40 +33,36 @@ PLACES = {
     "column": "column.Column",
     "stack": "stack.Stack",
     "rubble": "rubble.Rubble",
-}
-"""File and class of each, by its name."""
-KINDS: Later[type[Maker]] = Later(
-    {name: partial(_kind, place) for name, place in PLACES.items()},
-    beyond=Installed("blocksim.kinds"),
-)
-"""All there are: packages offer theirs under the entry point group `blocksim.kinds`."""
-
-
-SOLID_PLACES = {
     "dome": "dome.Dome",
     "barrel-vault": "skewarch.BarrelVault",
     "skew-arch": "skewarch.SkewArch",
+    "groin-vault": "groinvault.GroinVault",
     "tower": "tower.Tower",
     "return-wall": "returnwall.ReturnWall",
     "corbel-dome": "corbeldome.CorbelDome",
 }
-"""The same of kinds in space."""
-SOLID_KINDS: Later[type[SolidMaker]] = Later(
-    {name: partial(_kind, place) for name, place in SOLID_PLACES.items()}
+"""File and class of each, by its name."""
+KINDS: Later[type[Kind[Any]]] = Later(
+    {name: partial(_kind, place) for name, place in PLACES.items()},
+    beyond=Installed("blocksim.kinds"),
 )
+"""All there are, of the plane and in space.
+
+Packages offer theirs under the entry point group `blocksim.kinds`.
+"""
 
 
-def own_kind(place: str) -> type[Maker]:
+def own_kind(place: str) -> type[Kind[Any]]:
     """Return a kind of one's own by its place, ``module:CLASS``.
 
     Raises
     ------
     InputError
-        If it cannot be loaded, or is no `Maker`.
+        If it cannot be loaded, or is no `Maker` or `SolidMaker`.
     """
-    from blocksim.blocks.maker import Maker
+    from blocksim.blocks.maker import Kind
 
     found = loaded_here("kind", place)
-    if not (isinstance(found, type) and issubclass(found, Maker)):
-        raise InputError("kind", place, "a Maker of blocksim, as module:CLASS")
-    return found
+    if not (isinstance(found, type) and issubclass(found, Kind)):
+        raise InputError("kind", place, "a Maker or SolidMaker of blocksim, as module:CLASS")
+    return cast("type[Kind[Any]]", found)

@@ -16,7 +16,7 @@ from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.fields import fields_of
 from blocksim.kinds.archkind import ArchKind
-from blocksim.kinds.blockwork import floor, pier
+from blocksim.kinds.blockwork import box, floor, pier
 from blocksim.kinds.portal import LEVEL, SEMICIRCLE, require_bearing
 
 
@@ -142,12 +142,11 @@ class Arcade(Maker):
         starts = starts - whole / 2
         outside, ground = (starts[0], starts[-1] + wides[-1]), spring - self.pier_height
         fixed = [
-            _abutment(
-                "left", outside[0], -self.pier_width, ground, first, self.arches[0].thickness
-            ),
-            _abutment(
-                "right", outside[1], self.pier_width, ground, last, self.arches[-1].thickness
-            ),
+            _abutment(name, edge, side * self.pier_width, ground, face, arch.thickness)
+            for name, edge, side, face, arch in (
+                ("left", outside[0], -1, first, self.arches[0]),
+                ("right", outside[1], 1, last, self.arches[-1]),
+            )
         ]
         reach = 2 * self.pier_width
         levels = {height for _, height in self.piers} or {self.pier_height}
@@ -160,9 +159,12 @@ class Arcade(Maker):
             low = spring - height
             name = f"pier {place + 1}"
             if levels != {self.pier_height}:
-                fixed.append(_own_floor(name, ends, low, reach / 2))
+                fixed.append(box(f"floor of {name}", ends, (low - reach / 2, low), fixed=True))
             before, after = faces[place][1], faces[place + 1][0]
-            _require_wide(name, width, before, after)
+            # Two springings lie wholly on a pier.
+            least = before[1][0] - before[0][0] + after[0][0] - after[1][0]
+            wide = f"{name}, {width:g} m wide"
+            require(width >= least, "each_pier", wide, f"{least:.6g} m or wider")
             bodies += pier(name, ends, ends, low, spring, self.pier_courses, self.arch.depth)
             bodies += _saddle(name, ends, before, after, spring, self.arch)
             fills += self._over(density, place, ends, before, after, len(bodies) - 1)
@@ -225,21 +227,6 @@ def _level_faces(arch: ArchKind, spring: float) -> tuple[Face, Face]:
     if abs(left[0][1] - right[0][1]) > near or abs(left[1][1] - right[1][1]) > near:
         raise InputError("arch", arch.name, "one whose springings are as high")
     return left, right
-
-
-def _require_wide(name: str, width: float, before: Face, after: Face) -> None:
-    """Raise `InputError` unless two springings lie wholly on a pier."""
-    least = before[1][0] - before[0][0] + after[0][0] - after[1][0]
-    require(width >= least, "each_pier", f"{name}, {width:g} m wide", f"{least:.6g} m or wider")
-
-
-def _own_floor(name: str, ends: tuple[float, float], ground: float, deep: float) -> Body:
-    """Make what a pier stands on, of its own height."""
-    left, right = ends
-    corners = np.array(
-        [[left, ground - deep], [right, ground - deep], [right, ground], [left, ground]]
-    )
-    return Body(polygons=(corners,), name=f"floor of {name}", fixed=True)
 
 
 def _saddle(

@@ -16,8 +16,7 @@ from blocksim.blocks.maker import FARTHEST, Maker, count, metres, parameter
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.common.checks import VOUSSOIRS
 from blocksim.common.errors import InputError
-from blocksim.kinds.curves import Curve, where
-from blocksim.kinds.strips import Voussoirs, chords, strips
+from blocksim.kinds.curves import Curve, Voussoirs, chords, strips, where
 
 JOINTS = ("normal", "radial", "vertical")
 FOOT = 0.5

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from blocksim.arch import limit, theory
 from blocksim.arch.answers import ArchAnswer, ArchBracket
-from blocksim.arch.carried import carried_by_arch
-from blocksim.arch.circular import Arch
+from blocksim.arch.carried import carried_by_arch, standing_forces
+from blocksim.arch.circular import ETA_MAX, Arch
 from blocksim.arch.limit import LimitState
-from blocksim.arch.modes import Mode
-from blocksim.arch.observed import observed_mode
+from blocksim.arch.modes import Mode, observed_mode
 from blocksim.arch.theory import Critical
-from blocksim.arch.theory.equations import ETA_MAX
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.kinds.offers import Offers, Static, Threshold
@@ -39,7 +39,6 @@ class ArchOffers(Offers):
 
     Parameters
     ----------
-    arch : Arch
     problem : Problem
         Of this arch, under its own weight; gravity may lean out of the plane.
     maker : CircularArch
@@ -80,7 +79,8 @@ class ArchOffers(Offers):
         mode = None
         if verdict is Verdict.STANDS:
             spare = limit.slack(arch, self.problem.mu)
-            said = f"{said}; thickness and friction could both be {spare:.2%} less"
+            friction = "" if math.isinf(self.problem.mu) else " and friction could both"
+            said = f"{said}; thickness{friction or ' could'} be {spare:.2%} less"
         else:
             # Its linear programmes take longer to load than an arch that stands to answer.
             from blocksim.arch.limit.mechanism import mechanism
@@ -96,13 +96,16 @@ class ArchOffers(Offers):
             return None
         return carried_by_arch(self.arch, self.problem, joint)
 
+    def forces(self) -> Array | None:
+        """Return forces that are well within the arch; None where gravity leans."""
+        return standing_forces(self.arch, self.problem) if self.problem.is_planar else None
+
     def mode(self, joints: tuple[ObservedJoint, ...]) -> Mode | None:
         """Return which of the seven modes it is."""
         return observed_mode(joints, self.arch)
 
     def reduction(self) -> Reduced | None:
         """Return half of the arch, its voussoirs merged."""
-        # What moves blocks is loaded where it is asked for.
         from blocksim.arch.reduction import Reduction
 
         return Reduction.of(self.arch, self.problem.mu, self.problem.assembly)
@@ -228,17 +231,12 @@ def _compare(eta: float, least: float | None, whose: str) -> tuple[Verdict, str]
 
 def _limit_joints(found: Mechanism) -> tuple[ObservedJoint, ...]:
     """Tell what the joints of a mechanism do."""
-
-    def state(outside: bool, inside: bool, *slides: bool) -> JointState:
-        if outside and inside:
-            return JointState.OPEN
-        if any(slides):
-            return JointState.HINGE_AND_SLIDES if outside or inside else JointState.SLIDES
-        if inside:
-            return JointState.HINGE_INTRADOS
-        return JointState.HINGE_EXTRADOS if outside else JointState.CLOSED
-
+    # What turns about the extrados opens at the inner end.
     return tuple(
-        ObservedJoint(angle=angle, state=state(*row))
-        for angle, row in zip(found.angles.tolist(), found.active.tolist(), strict=True)
+        ObservedJoint(
+            angle=angle, state=JointState.of(inner=outside, outer=inside, slides=any(slides))
+        )
+        for angle, (outside, inside, *slides) in zip(
+            found.angles.tolist(), found.active.tolist(), strict=True
+        )
     )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import pairwise
+
 import numpy as np
 
-from blocksim.blocks.assembly import Array
 from blocksim.blocks.given import Body
 
 
@@ -23,7 +25,7 @@ def box(
 
 
 def pier(
-    name: str, foot: tuple[float, float], head: tuple[float, float], low: float, high: float,
+    name: str, foot: Sequence[float], head: Sequence[float], low: float, high: float,
     courses: int, depth: float,
 ) -> list[Body]:  # fmt: skip
     """Make a pier of courses as high, between two x at its foot and two at its head [m]."""
@@ -31,16 +33,11 @@ def pier(
     levels[-1] = high
     share = np.arange(courses + 1)[:, None] / courses
     ends = np.array(foot) * (1 - share) + np.array(head) * share
+    rows = np.stack([ends, np.repeat(levels[:, None], 2, axis=1)], axis=-1)
     return [
-        Body(polygons=(_course(ends, levels, index),), name=f"{name} {index + 1}", depth=depth)
-        for index in range(courses)
+        Body(polygons=(np.concatenate([low, high[::-1]]),), name=f"{name} {at}", depth=depth)
+        for at, (low, high) in enumerate(pairwise(rows), 1)
     ]
-
-
-def _course(ends: Array, levels: Array, index: int) -> Array:
-    (left, right), (upper_left, upper_right) = ends[index], ends[index + 1]
-    low, high = levels[index], levels[index + 1]
-    return np.array([[left, low], [right, low], [upper_right, high], [upper_left, high]])
 
 
 def floor(left: float, right: float, top: float, thick: float) -> Body:

@@ -30,22 +30,19 @@ from blocksim.common.checks import (
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.fields import Field, fields_of
 from blocksim.kinds.archkind import CurvedArch
-from blocksim.kinds.curves import Curve
-from blocksim.kinds.strips import Voussoirs
+from blocksim.kinds.curves import Curve, Voussoirs, circle
 
 if TYPE_CHECKING:
     from blocksim.kinds.archoffers import ArchOffers
 
 ROUND = 360.0
-
-
 SPRINGINGS = "left_deg", "right_deg"
 WEIGHTS: dict[str, Weight] = {"centreline": "centreline", "curved": "sector"}
 """What an arch calls the weights of a kind that it has, too."""
 LEAST_DENSITY = 100.0
 """Weight per volume below which weights are taken for ratios, not for newtons [N/m^3]."""
 FOLLOW = {
-    ("span", "rise"): ("radius", "half_angle"),
+    ("span", "rise", "at"): ("radius", "half_angle", "half_angle_deg"),
     ("half_angle_deg",): ("half_angle",),
     ("half_angle",): SPRINGINGS,
     ("ratio",): ("eta", "thickness"),
@@ -139,11 +136,15 @@ class CircularArch(CurvedArch):
         if self.weight == "sector":
             # As an arch calls it.
             object.__setattr__(self, "weight", "curved")
-        if self.span is not None or self.rise is not None:
-            for name in ("span", "rise"):
-                require(getattr(self, name) is not None, name, MISSING, "given")
+        for name, beside in (("span", self.rise), ("rise", self.span)):
+            alone = beside is not None and getattr(self, name) is None
+            require(not alone, name, MISSING, "given")
         line = self.line
+        ok = line is not None or self.at == "intrados"
+        require(ok, "at", self.at, "left out: it is of span and rise")
         if line is not None:
+            both = self.half_angle_deg is not None
+            require(not both, "half_angle_deg", self.half_angle_deg, "left out beside span")
             self._derive("half_angle", line.half_angle)
         elif self.half_angle_deg is not None:
             HALF_ANGLE_DEG.require("half_angle_deg", self.half_angle_deg)
@@ -156,9 +157,8 @@ class CircularArch(CurvedArch):
             self._derive("eta", self.ratio * self._least(self.ratio))
         if line is not None:
             size = Dimensions(**vars(line), thickness=self.thickness)
-            self._derive(
-                "radius", size.radius if self.eta is None else line.mean_radius(self.eta)
-            )
+            radius = size.radius if self.eta is None else line.mean_radius(self.eta)
+            self._derive("radius", radius)
         if self.eta is not None:
             ETA.require("eta", self.eta)
             self._derive("thickness", self.eta * self.radius)
@@ -175,9 +175,7 @@ class CircularArch(CurvedArch):
         """Return the least thickness over radius that stands, of which a ratio is taken."""
         RATIO.require("ratio", ratio)
         if self.half_angle is None or self.weight not in WEIGHTS:
-            allowed = (
-                "left out: it is of symmetric arches by their half-angle, or span and rise"
-            )
+            allowed = "left out: it is of symmetric arches by half-angle, or span and rise"
             raise InputError("ratio", ratio, allowed)
         if self.friction is None:
             raise InputError("friction", MISSING, "given beside ratio")
@@ -263,7 +261,7 @@ class CircularArch(CurvedArch):
         # Blocks or friction may have been exchanged.
         mine = self.fill is None and problem.assembly is self.built.assembly
         alike = bool((problem.friction == problem.mu).all()) and problem.mu > 0
-        still = problem.shaking is None and not problem.is_loaded and not problem.gravity[0]
+        still = not problem.is_moving and not problem.is_loaded and not problem.gravity[0]
         if arch is None or not (mine and alike and still) or problem.strength is not None:
             return None
         from blocksim.kinds.archoffers import ArchOffers
@@ -349,25 +347,3 @@ class CircularArch(CurvedArch):
         arm = self.radius * np.sin(half) / half
         centre = arm[:, None] * np.column_stack([np.sin(middle), np.cos(middle)])
         return Voussoirs(**{**vars(found), "centre": centre})
-
-
-def circle(shift: float, radius: float, start: float, end: float) -> Curve:
-    """Return an arc about a centre at a height of 0, by the angle from the vertical."""
-    return Curve(
-        start=start,
-        end=end,
-        at=lambda s: (shift + radius * np.sin(s), radius * np.cos(s)),
-        first=lambda s: (radius * np.cos(s), -radius * np.sin(s)),
-        second=lambda s: (-radius * np.sin(s), -radius * np.cos(s)),
-    )
-
-
-def weighed_arch(problem: Problem) -> Arch | None:
-    """Return the symmetric circular arch of a problem, however it was made, else None.
-
-    One whose density was not given is none: its weights are ratios.
-    """
-    maker = problem.maker
-    if not isinstance(maker, CircularArch):
-        return None
-    return maker.shape if maker.in_radii or maker.unit_weight >= LEAST_DENSITY else None

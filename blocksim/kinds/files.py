@@ -9,7 +9,6 @@ Lengths in m, forces in N, angles in degrees, y upwards. The keys besides blocks
 
 from __future__ import annotations
 
-import math
 import os
 import re
 from collections.abc import Generator, Mapping
@@ -20,32 +19,35 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
 from blocksim.blocks import structure
-from blocksim.blocks.entries import AROUND, Around, around_of
-from blocksim.blocks.maker import Maker, kind_of
+from blocksim.blocks.entries import AROUND, Around
+from blocksim.blocks.kindtable import kind_of
+from blocksim.blocks.maker import Kind, Maker
 from blocksim.blocks.problem import Problem
-from blocksim.common.checks import LENGTH, require
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError, perhaps
-from blocksim.common.fields import fields_of
 from blocksim.common.files import AnyPath, json_of, read_file, shipped_files, toml_of
+from blocksim.common.tables import as_said
 from blocksim.kinds import KINDS
+from blocksim.kinds.changes import edited
+from blocksim.reading.asked import Reading
 from blocksim.reading.compas import is_compas, read_compas
-from blocksim.reading.drawing import Reading
+from blocksim.reading.drawing import Drawing
 from blocksim.reading.dxf import read_dxf
 from blocksim.reading.scenes import is_scene, read_scene
 from blocksim.reading.svg import read_svg
 
 if TYPE_CHECKING:
-    from blocksim.blocks.space.problem import SpatialProblem
+    from blocksim.blocks.space.files import SpatialAround
+    from blocksim.blocks.space.maker import SolidMaker
 
 LARGEST_FILES = {".json": 20_000_000, ".toml": 1_000_000}
 """Bytes; a larger file is not read: TOML takes a second for each of these."""
 WRITTEN = {".json": "JSON", ".toml": "TOML"}
-IN_PLANE = (
-    "x and y: in space there are check, bracket, films and stills by render, and load_in_space"
-)
-"""What is accepted where blocks have to lie in the plane."""
 DRAWN = {".dxf": read_dxf, ".svg": read_svg}
 """Endings of drawings, and who reads them."""
+MESHES = (".obj", ".stl", ".ply", ".glb")
+"""Endings of meshes, of blocks in space."""
+OTHERS = (*DRAWN, *MESHES)
 AS_DRAWN = Reading()
 """A drawing says its unit, and has the layers `blocks` and `supports`."""
 
@@ -56,8 +58,8 @@ def shipped_structures() -> dict[str, Path]:
 
 
 def is_drawing(path: Path | str) -> bool:
-    """Tell a drawing by its ending."""
-    return Path(path).suffix.lower() in DRAWN
+    """Tell a drawing, or a mesh, by its ending: neither says friction."""
+    return Path(path).suffix.lower() in OTHERS
 
 
 def load_structure(
@@ -69,13 +71,14 @@ def load_structure(
     tolerance: float | None = None,
     depth: float | None = None,
     reading: Reading = AS_DRAWN,
-) -> Problem:
-    """Read a structure file, a drawing or an assembly of compas.
+) -> Problem[Any]:
+    """Read a structure file, a drawing, a mesh or an assembly of compas.
 
     Parameters
     ----------
     path : str or path
-        Ends in .json, .toml, .dxf or .svg, or the name of a shipped one.
+        Ends in .json, .toml, .dxf, .svg, .obj, .stl, .ply or .glb; or the name of a shipped
+        one.
     changes : mapping of str to object
         Parameters of its kind that replace those in the file; `arch.thickness` is one of its
         arch.
@@ -88,110 +91,31 @@ def load_structure(
     depth : float, optional
         Length out of the plane of blocks that have none of their own [m], instead of 1.
     reading : Reading
-        Unit and layers of a drawing.
+        Unit and layers of a drawing or mesh.
 
     Raises
     ------
     InputError
         In one line: file, entry, value, and what would be accepted.
-    """
-    found = load_any(path, changes, density, friction=friction, tolerance=tolerance,
-                     depth=depth, reading=reading)  # fmt: skip
-    if not isinstance(found, Problem):
-        raise InputError("blocks", "three coordinates", IN_PLANE, where=os.fspath(path))
-    return found
 
-
-def load_in_space(
-    path: AnyPath,
-    density: float | None = None,
-    *,
-    friction: float | None = None,
-    tolerance: float | None = None,
-) -> SpatialProblem:
-    """Read a structure file in space: its corners have three coordinates.
-
-    Parameters
-    ----------
-    path, density, friction, tolerance
-        As of `load_structure`.
-
-    Raises
-    ------
-    InputError
-        In one line: file, entry, value, and what would be accepted.
-    """
-    found = load_any(path, {}, density, friction=friction, tolerance=tolerance)
-    if isinstance(found, Problem):
-        allowed = "blocks with three coordinates: load_structure reads plane ones"
-        raise InputError("blocks", "in the plane", allowed, where=os.fspath(path))
-    return found
-
-
-def load_any(
-    path: AnyPath,
-    changes: Mapping[str, object] = MappingProxyType({}),
-    density: float | None = None,
-    *,
-    friction: float | None = None,
-    tolerance: float | None = None,
-    depth: float | None = None,
-    reading: Reading = AS_DRAWN,
-) -> Problem | SpatialProblem:
-    """Read a structure file, which says by its corners whether it lies in the plane.
-
-    Parameters
-    ----------
-    path, changes, density, friction, tolerance, depth, reading
-        As of `load_structure`.
-
-    Raises
-    ------
-    InputError
-        In one line: file, entry, value, and what would be accepted.
+    Examples
+    --------
+    >>> load_structure("oppenheim_7")
+    Problem("Oppenheim's arch of seven voussoirs, pushed sideways", 7 blocks, 8 joints, mu=inf)
     """
     from blocksim.blocks.space.files import is_spatial
 
     with named_file(path, reading) as said:
-        data = said if friction is None else with_friction(said, friction)
-        data = data if tolerance is None else within(data, tolerance)
-        table: object = changed(data, changes) if changes else data
-        table = table if density is None else weighed(table, density)
-        if depth is not None:
-            spatial = is_spatial(table)
-            require(not spatial, "depth", depth, "left out: it is of blocks in the plane")
-            table = deepened(table, depth)
-        return any_of(table)
-
-
-def any_of(data: object) -> Problem | SpatialProblem:
-    """Make a problem of what a structure file says, in the plane or in space."""
-    from blocksim.blocks.space.files import is_spatial, problem_in_space
-
-    return problem_in_space(data) if is_spatial(data) else structure_of(data)
-
-
-def with_friction(data: object, friction: float) -> object:
-    """Return what a file says, with a friction if it says none."""
-    if not isinstance(data, dict):
-        return data
-    table = cast("dict[str, Any]", data)
-    return {"friction": "inf" if friction == math.inf else friction, **table}
-
-
-def within(data: object, tolerance: float) -> object:
-    """Return what a file says, with gaps and overlaps closed up to a distance [m]."""
-    require(0 <= tolerance <= LENGTH.high, "tolerance", tolerance, f"0 to {LENGTH.high:g} m")
-    if not isinstance(data, dict):
-        return data
-    table = cast("dict[str, Any]", data)
-    allowed = "left out: it is for blocks, and this is a kind"
-    require("kind" not in table, "tolerance", tolerance, allowed)
-    return {**table, "tolerance": tolerance}
+        planar = depth is None or not is_spatial(said)
+        require(planar, "depth", depth, "left out: it is of blocks in the plane")
+        edits: dict[str, Any] = {"friction": friction, "tolerance": tolerance, "depth": depth}
+        return structure_of(edited(said, changes, density, **edits))
 
 
 @contextmanager
-def named_file(path: AnyPath, reading: Reading = AS_DRAWN) -> Generator[object]:
+def named_file(
+    path: AnyPath, reading: Reading = AS_DRAWN, drawing: Drawing | None = None
+) -> Generator[object]:
     """Give what a structure file says; what is wrong with it is said with the file's name.
 
     Parameters
@@ -200,6 +124,8 @@ def named_file(path: AnyPath, reading: Reading = AS_DRAWN) -> Generator[object]:
         As of `load_structure`.
     reading : Reading
         Unit and layers of a drawing.
+    drawing : Drawing, optional
+        What `drawing_of` read of it, where that was asked for before.
 
     Raises
     ------
@@ -209,22 +135,28 @@ def named_file(path: AnyPath, reading: Reading = AS_DRAWN) -> Generator[object]:
     # As it was given: a name that ends in a slash is no file.
     path, near = os.fspath(path), ""
     ending = Path(path).suffix.lower()
-    if ending not in WRITTEN and ending not in DRAWN:
+    if ending not in WRITTEN and ending not in OTHERS:
         known = shipped_structures()
-        near = "" if path in known else perhaps(path, known)
+        near = perhaps(path, known)
         path = str(known.get(path, path))
         ending = Path(path).suffix
-    endings = ".json, .toml, .dxf or .svg"
+    endings = ".json, .toml, .dxf, .svg, .obj, .stl, .ply or .glb"
     allowed = f"an existing structure file, {endings}, or a shipped structure{near}"
-    require(ending in WRITTEN or ending in DRAWN, "structure", str(path), allowed)
+    require(ending in WRITTEN or ending in OTHERS, "structure", str(path), allowed)
     text = b""
     if ending in WRITTEN:
         require_undrawn(reading)
         text = read_file(path, "structure", allowed, LARGEST_FILES[ending])
     data: object = None
     try:
-        drawn = DRAWN.get(ending)
-        data = drawn(path, reading).structure() if drawn else written(text, WRITTEN[ending])
+        if ending in DRAWN:
+            data = (drawing or drawing_of(path, reading)).structure()
+        elif ending in MESHES:
+            from blocksim.reading.meshes import read_mesh
+
+            data = read_mesh(path, reading)
+        else:
+            data = written(text, WRITTEN[ending])
         yield data
     except InputError as error:
         field = _by_name(error.field, data)
@@ -235,12 +167,26 @@ def named_file(path: AnyPath, reading: Reading = AS_DRAWN) -> Generator[object]:
         raise InputError("file", said, f"valid {WRITTEN[ending]}", where=path) from None
 
 
+def drawing_of(path: AnyPath, reading: Reading = AS_DRAWN) -> Drawing:
+    """Read a drawing: its shapes, and what of it is refused.
+
+    Raises
+    ------
+    InputError
+        In one line, with the file's name, if it is no drawing.
+    """
+    try:
+        return DRAWN[Path(path).suffix.lower()](path, reading)
+    except InputError as error:
+        where = os.fspath(path)
+        raise InputError(error.field, error.value, error.allowed, where=where) from None
+
+
 def require_undrawn(reading: Reading) -> None:
     """Refuse what is said of a drawing where there is none."""
-    require(reading.unit is None, "unit", reading.unit, "left out: it is of drawings")
-    named = ", ".join(reading.layers)
-    require(not named, "layer", named, "left out: it is of drawings")
-    require(reading.snap is None, "snap", reading.snap, "left out: it is of drawings")
+    named = ", ".join(reading.layers) or None
+    for name, value in (("unit", reading.unit), ("layer", named), ("snap", reading.snap)):
+        require(value is None, name, value, "left out: it is of drawings")
 
 
 def written(text: bytes, language: str) -> object:
@@ -270,76 +216,6 @@ def _by_name(field: str, data: object) -> str:
     return field
 
 
-def changed(data: object, changes: Mapping[str, object]) -> dict[str, Any]:
-    """Return the table of a kind with other parameters.
-
-    Raises
-    ------
-    InputError
-        If it is of no kind.
-    """
-    kind = data.get("kind") if isinstance(data, dict) else None  # pyright: ignore
-    table = {**cast("dict[str, Any]", data)}
-    for name, value in changes.items():
-        require(kind is not None, name, value, "left out: the file has blocks, not a kind")
-        here, _, rest = name.partition(".")
-        inside = table.get(here)
-        nested = bool(rest) and isinstance(inside, Mapping | None)
-        table[here] = {**(inside or {}), rest: value} if nested else value
-    return table
-
-
-def weighed(data: object, density: float) -> object:
-    """Return what a structure file says with another weight per volume [N/m^3].
-
-    Raises
-    ------
-    InputError
-        If a block has a weight of its own.
-    """
-    if not isinstance(data, dict):
-        return data
-    table = cast("dict[str, Any]", data)
-    blocks: Any = table.get("blocks")
-    for at, block in enumerate(cast("list[Any]", blocks) if isinstance(blocks, list) else ()):
-        own: Any = (
-            cast("dict[str, Any]", block).get("weight") if isinstance(block, dict) else None
-        )
-        allowed = "left out where a unit weight is given: it is of this block alone"
-        require(own is None, f"blocks[{at}].weight", own, allowed)
-    return {**table, "density": density}
-
-
-def deepened(data: object, depth: float, *own: type[Maker]) -> object:
-    """Return what a structure file says, its blocks so long out of the plane [m].
-
-    Raises
-    ------
-    InputError
-        If a block has a depth of its own, or a kind none that could be another.
-    """
-    if not isinstance(data, dict):
-        return data
-    table = cast("dict[str, Any]", data)
-    if "kind" in table:
-        kinds = {each.name: each for each in (*ALL, *own)}
-        kind = kinds.get(str(table["kind"]))
-        # What is wrong with its name is said where it is made.
-        known = {"depth"} if kind is None else fields_of(kind)
-        inside = "depth" if "depth" in known else "arch.depth" if "arch" in known else None
-        require(inside is not None, "depth", depth, "left out: its blocks have theirs")
-        return changed(table, {inside or "": depth})
-    blocks: Any = table.get("blocks")
-    made: list[Any] = []
-    for at, block in enumerate(cast("list[Any]", blocks) if isinstance(blocks, list) else ()):
-        said = cast("dict[str, Any]", block) if isinstance(block, dict) else None
-        if said is not None:
-            allowed = "left out where --depth is given: it is of this block alone"
-            require("depth" not in said, f"blocks[{at}].depth", said.get("depth"), allowed)
-        made.append(block if said is None else {**said, "depth": depth})
-    return {**table, "blocks": made}
-
-
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """Refuse a key that stands twice in a table of JSON."""
     table: dict[str, Any] = {}
@@ -349,8 +225,8 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return table
 
 
-def structure_of(data: object, *own: type[Maker]) -> Problem:
-    """Make a problem of what a structure file says.
+def structure_of(data: object, *own: type[Kind[Any]]) -> Problem[Any]:
+    """Make a problem of what a structure file says, of the plane or in space.
 
     Parameters
     ----------
@@ -363,22 +239,61 @@ def structure_of(data: object, *own: type[Maker]) -> Problem:
     ------
     InputError
         In one line: the first entry that is wrong, its value, and what would be accepted.
+
+    Examples
+    --------
+    >>> floor = {"id": 0, "fixed": True, "vertices": [[-2, -1], [2, -1], [2, 0], [-2, 0]]}
+    >>> box = {"id": 1, "vertices": [[0, 0], [1, 0], [1, 1], [0, 1]]}
+    >>> structure_of({"friction": 0.5, "blocks": [floor, box]})
+    Problem(1 blocks, 1 joints, mu=0.5)
+    >>> structure_of({"kind": "column", "drums": 3, "friction": 1})
+    Problem('column', 3 blocks, 3 joints, mu=1)
     """
     if not isinstance(data, dict) or "kind" not in data:
-        from blocksim.blocks.space.files import is_spatial
+        from blocksim.blocks.space.files import is_spatial, problem_in_space
 
-        plane = not is_spatial(cast("object", data))
-        require(plane, "blocks", "three coordinates", IN_PLANE)
-        return structure.structure_of(cast("object", data))
+        said = cast("object", data)
+        return problem_in_space(said) if is_spatial(said) else structure.structure_of(said)
     table = cast("dict[str, Any]", data)
-    require("blocks" not in table, "kind", table["kind"], "left out beside blocks")
-    around = around_of({key: table[key] for key in table if key in AROUND})
+    # Of a tower it is how many.
+    listed = isinstance(table.get("blocks"), list)
+    require(not listed, "kind", table["kind"], "left out beside blocks")
+    kinds = {**KINDS, **{each.name: each for each in own}} if own else KINDS
+    around = around_said(table, kinds)
     said = {key: table[key] for key in table if key not in AROUND}
     forces = {"friction": around.friction, "density": around.density}
-    return problem_of(kind_of(said, (*ALL, *own), forces=forces), around)
+    made = kind_of(said, kinds, forces=forces)
+    if isinstance(made, Maker):
+        return problem_of(made, cast("Around", around))
+    from blocksim.blocks.space.files import problem_of_solids
+
+    solid = cast("SolidMaker", made)
+    found = problem_of_solids(cast("SpatialAround", around), solid.named, solid.built.assembly)
+    return replace(found, title=found.title or made.name, maker=made)
 
 
-ALL = tuple(KINDS.values())
+def around_said(
+    table: Mapping[str, Any], kinds: Mapping[str, type[Kind[Any]]] = KINDS
+) -> Around | SpatialAround:
+    """Return what a structure file says besides its blocks, of the plane or in space.
+
+    Raises
+    ------
+    InputError
+        In one line: the first entry that is wrong, or that means nothing in space.
+    """
+    from blocksim.blocks.space.files import AROUND as OF_SPACE
+    from blocksim.blocks.space.files import SpatialAround, is_spatial
+
+    around = {key: table[key] for key in table if key in AROUND}
+    named = table.get("kind")
+    kind = kinds[named] if isinstance(named, str) and named in kinds else None
+    if not (is_spatial(table) if kind is None else kind.in_space):
+        return as_said(Around, around)
+    for name in around.keys() - set(OF_SPACE):
+        about = "blocks lie" if kind is None else f"a {kind.name} is"
+        raise InputError(name, around[name], f"left out: {about} in space")
+    return as_said(SpatialAround, around)
 
 
 def problem_of(kind: Maker, around: Around) -> Problem:
@@ -386,7 +301,6 @@ def problem_of(kind: Maker, around: Around) -> Problem:
 
     Parameters
     ----------
-    kind : Maker
     around : Around
         Friction, loads and the like.
 

@@ -12,7 +12,7 @@ import numpy as np
 from blocksim.blocks.maker import metres, parameter
 from blocksim.common.checks import VOUSSOIRS, require
 from blocksim.kinds.archkind import ArchKind
-from blocksim.kinds.strips import Voussoirs, chords
+from blocksim.kinds.curves import Voussoirs, chords
 
 
 @dataclass(frozen=True, kw_only=True)

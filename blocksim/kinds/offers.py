@@ -6,14 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import ObservedJoint
 from blocksim.blocks.problem import Problem
-from blocksim.limit.carried import Carried
+from blocksim.limit.carried import Carried, carried_by
+from blocksim.limit.crushing import Needed
 from blocksim.simulation.simulated import Reduced
 from blocksim.simulation.verdict import Evidence, Verdict
 
 if TYPE_CHECKING:
-    from blocksim.blocks.space.problem import SpatialProblem
+    from blocksim.blocks.problem import Problem
     from blocksim.simulation.observation import Observation
 
 
@@ -23,8 +25,6 @@ class Static:
 
     Parameters
     ----------
-    verdict : Verdict
-    evidence : Evidence
     joints : tuple of ObservedJoint
         What each joint does as a collapse starts.
     mode : Any
@@ -100,7 +100,6 @@ class Threshold:
         ----------
         low, high : float or None
             Numbers that fell and that stood.
-        method : str
         seen : Observation or None
             What an engine showed of the one that fell.
         """
@@ -121,6 +120,9 @@ class Offers:
     def carried(self, joint: int | None = None) -> Carried | None:
         """Return what the blocks carry; thrust at a joint."""
 
+    def forces(self) -> Array | None:
+        """Return forces of equilibrium, as of `Equilibrium`, for a proof that it stands."""
+
     def mode(self, joints: tuple[ObservedJoint, ...]) -> Any:
         """Return what the maker calls a mechanism whose joints do this."""
 
@@ -134,6 +136,30 @@ class Offers:
         """Return what is put under the answer's `arch`, with modes that were found."""
 
 
-def offers_of(problem: Problem | SpatialProblem) -> Offers | None:
+def offers_of(problem: Problem[Any]) -> Offers | None:
     """Return what the maker of a problem knows of it; None where nothing."""
     return None if problem.maker is None else problem.maker.offers(problem)
+
+
+def carried_of(
+    problem: Problem[Any],
+    joint: int | None = None,
+    needed: Needed | None = None,
+) -> Carried | None:
+    """Find what anything carries, an arch under its own weight by its own statics.
+
+    None in space, and where gravity leans out of the plane, or the ground shakes: statics in
+    the plane do not tell what happens then.
+
+    Parameters
+    ----------
+    joint : int, optional
+        Where thrust is told; by default the crown.
+    needed : Needed, optional
+        The least strength of blocks that crush.
+    """
+    if problem.in_space or not problem.has_statics:
+        return None
+    offered = offers_of(problem)
+    own = None if offered is None else offered.carried(joint)
+    return own or carried_by(problem, joint, needed)

@@ -13,9 +13,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.maker import count, metres
 from blocksim.common.checks import VOUSSOIRS, require
 from blocksim.kinds.archkind import NEARLY, CurvedArch
-from blocksim.kinds.circular import circle
-from blocksim.kinds.curves import Curve, where
-from blocksim.kinds.strips import Voussoirs, chords, strips
+from blocksim.kinds.curves import Curve, Voussoirs, chords, circle, strips, where
 
 
 @dataclass(frozen=True, kw_only=True)

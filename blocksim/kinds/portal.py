@@ -67,18 +67,12 @@ class Portal(Maker):
         widest = max(foot, self.pier_width)
         for name, face, side in (("left", faces[0], -1.0), ("right", faces[1], 1.0)):
             inner, spring = face[0].tolist()
-            below = sorted((inner, inner + side * foot))
-            above = sorted((inner, inner + side * self.pier_width))
+            edge = inner + side * self.pier_width
+            below, above = sorted((inner, inner + side * foot)), sorted((inner, edge))
             bodies += pier(
-                f"{name} pier",
-                (below[0], below[1]),
-                (above[0], above[1]),
-                ground,
-                spring,
-                self.pier_courses,
-                self.arch.depth,
+                f"{name} pier", below, above, ground, spring, self.pier_courses, self.arch.depth
             )
-            bodies += skewback(name, face, inner + side * self.pier_width, self.arch)
+            bodies += skewback(name, face, edge, self.arch)
             tops.append(len(bodies))
         left, right = faces[0, 0, 0] - widest, faces[1, 0, 0] + widest
         reach = (right - left) / 4

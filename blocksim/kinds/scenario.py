@@ -33,14 +33,12 @@ class Scenario:
     ----------
     name : str
         File name without its ending.
-    title, source : str
     given : mapping of str to object
         Parameters of `CircularArch`; a thickness need not be among them.
     lean : float
         Angle by which gravity leans out of the plane [rad].
     expected_modes : tuple of Mode
         Empty where nothing is said.
-    expected_eta : float or None
     expected_verdict : Verdict or None
         Of the arch at its own thickness.
     quick : bool

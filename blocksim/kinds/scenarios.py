@@ -191,12 +191,13 @@ def load_scenario(name: AnyPath) -> Scenario:
     return _scenario(path.stem, written, str(path))
 
 
-def written_in(path: AnyPath, what: str, allowed: str) -> dict[str, Any]:
+def written_in(
+    path: AnyPath, what: str, allowed: str, largest: int = LARGEST_FILE
+) -> dict[str, Any]:
     """Read a small TOML file.
 
     Parameters
     ----------
-    path : path
     what, allowed : str
         What the file is and has to be, for what is said of one that is not.
 
@@ -205,7 +206,7 @@ def written_in(path: AnyPath, what: str, allowed: str) -> dict[str, Any]:
     InputError
         If there is none, or it is no TOML.
     """
-    text = read_file(path, what, allowed, LARGEST_FILE)
+    text = read_file(path, what, allowed, largest)
     try:
         return toml_of(text)
     except ValueError as error:

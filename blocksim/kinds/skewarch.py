@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -15,8 +16,43 @@ from blocksim.blocks.space.maker import SolidMaker
 from blocksim.kinds.solids import abutment, voussoir
 
 
+class Barrel(SolidMaker):
+    """Voussoirs between radial planes and two abutments; kinds say their sizes."""
+
+    radius: float
+    thickness: float
+    half_angle_deg: float
+    voussoirs: int
+
+    def limits(self, name: str) -> tuple[float, float]:
+        """Range of a parameter: the intrados has a radius."""
+        low, high = super().limits(name)
+        return (low, min(high, 1.9 * self.radius)) if name == "thickness" else (low, high)
+
+    def barrel(
+        self, courses: Sequence[Sequence[float]], name: str = "{0}.{1}", skew: float = 0.0
+    ) -> tuple[Solid, ...]:
+        """Make it, from where each course is cut along the barrel, from the left."""
+        half = math.radians(self.half_angle_deg)
+        radii = self.radius - self.thickness / 2, self.radius + self.thickness / 2
+        angles = np.linspace(-half, half, self.voussoirs + 1).tolist()
+        blocks = [
+            Solid(parts=(voussoir(radii, ends, along, skew, half),), name=name.format(at, ring))
+            for at, (ends, cuts) in enumerate(
+                zip(itertools.pairwise(angles), courses, strict=True), 1
+            )
+            for ring, along in enumerate(itertools.pairwise(cuts), 1)
+        ]
+        whole = courses[0][0], courses[0][-1]
+        left, right = (
+            abutment(side, radii, angle, whole, skew, half)
+            for side, angle in (("left", -half), ("right", half))
+        )
+        return left, *blocks, right
+
+
 @dataclass(frozen=True, kw_only=True)
-class SkewArch(SolidMaker):
+class SkewArch(Barrel):
     """An arch whose abutments are square to the road, and whose barrel runs aslant.
 
     x is along the span, y along the barrel. Joints are radial planes, sheared along y.
@@ -36,30 +72,14 @@ class SkewArch(SolidMaker):
     )
     voussoirs: int = count(15, "number of voussoirs", low=3, high=500)
 
-    def limits(self, name: str) -> tuple[float, float]:
-        """Range of a parameter: the intrados has a radius."""
-        low, high = super().limits(name)
-        return (low, min(high, 1.9 * self.radius)) if name == "thickness" else (low, high)
-
     def solids(self) -> tuple[Solid, ...]:
         """Make two abutments and the voussoirs, from the left."""
-        half, skew = math.radians(self.half_angle_deg), math.radians(self.skew_deg)
-        radii = self.radius - self.thickness / 2, self.radius + self.thickness / 2
-        along = -self.width / 2, self.width / 2
-        angles = np.linspace(-half, half, self.voussoirs + 1).tolist()
-        blocks = [
-            Solid(parts=(voussoir(radii, ends, along, skew, half),), name=str(at + 1))
-            for at, ends in enumerate(itertools.pairwise(angles))
-        ]
-        return (
-            abutment("left", radii, -half, along, skew, half),
-            *blocks,
-            abutment("right", radii, half, along, skew, half),
-        )
+        ends = [-self.width / 2, self.width / 2]
+        return self.barrel([ends] * self.voussoirs, "{0}", math.radians(self.skew_deg))
 
 
 @dataclass(frozen=True, kw_only=True)
-class BarrelVault(SolidMaker):
+class BarrelVault(Barrel):
     """A barrel vault of rings of voussoirs, or in bond; x along the span, y along the vault."""
 
     name: ClassVar[str] = "barrel-vault"
@@ -78,27 +98,10 @@ class BarrelVault(SolidMaker):
         choices=("none", "half"),
     )  # fmt: skip
 
-    def limits(self, name: str) -> tuple[float, float]:
-        """Range of a parameter: the intrados has a radius."""
-        low, high = super().limits(name)
-        return (low, min(high, 1.9 * self.radius)) if name == "thickness" else (low, high)
-
     def solids(self) -> tuple[Solid, ...]:
         """Make two abutments and the voussoirs, course by course from the left."""
-        half = math.radians(self.half_angle_deg)
-        radii = self.radius - self.thickness / 2, self.radius + self.thickness / 2
-        angles = np.linspace(-half, half, self.voussoirs + 1).tolist()
         low, high, step = -self.length / 2, self.length / 2, self.length / self.rings
         cuts = np.linspace(low, high, self.rings + 1).tolist()
         shifted = [low, *(cut - step / 2 for cut in cuts[1:]), high]
-        blocks: list[Solid] = []
-        for course, ends in enumerate(itertools.pairwise(angles)):
-            here = shifted if self.bond == "half" and course % 2 else cuts
-            for ring, along in enumerate(itertools.pairwise(here)):
-                corners = voussoir(radii, ends, along, 0.0, half)
-                blocks.append(Solid(parts=(corners,), name=f"{course + 1}.{ring + 1}"))
-        return (
-            abutment("left", radii, -half, (low, high), 0.0, half),
-            *blocks,
-            abutment("right", radii, half, (low, high), 0.0, half),
-        )
+        odd = shifted if self.bond == "half" else cuts
+        return self.barrel([odd if at % 2 else cuts for at in range(self.voussoirs)])

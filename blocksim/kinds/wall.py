@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import ClassVar
 
-from blocksim.blocks.given import Body
 from blocksim.blocks.made import Made
 from blocksim.blocks.maker import Maker, Table, count, metres, parameter
 from blocksim.common.checks import require
@@ -65,18 +65,12 @@ class Wall(Maker):
 
     def made(self, density: float) -> Made:  # noqa: ARG002
         """Make a floor and the blocks, named by course and place; joints are found."""
-        bodies: list[Body] = []
-        for course in range(self.courses):
-            low = course * self.block_height
-            for place, (left, right) in enumerate(self._blocks(course + 1)):
-                bodies.append(
-                    box(
-                        f"{course + 1}.{place + 1}",
-                        (left, right),
-                        (low, (course + 1) * self.block_height),
-                        depth=self.depth,
-                    )
-                )
+        levels = [course * self.block_height for course in range(self.courses + 1)]
+        bodies = [
+            box(f"{course}.{place}", ends, up, depth=self.depth)
+            for course, up in enumerate(pairwise(levels), 1)
+            for place, ends in enumerate(self._blocks(course), 1)
+        ]
         reach = self.length / 10
         return Made(bodies=(floor(-reach, self.length + reach, 0.0, reach), *bodies))
 

@@ -11,21 +11,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import soil_bearing
-from blocksim.common.later import Library
+from blocksim.common.later import sparse
 from blocksim.limit.cones import Cones
 from blocksim.limit.linear import LinearProgramme, Optimum
-
-if TYPE_CHECKING:
-    from scipy import sparse
-else:
-    sparse = Library("scipy.sparse")
 
 LEAST = 1e-9
 """Share of what soil bears that is none."""
@@ -43,7 +38,7 @@ class Bearing:
 
     def __init__(self, problem: Problem, cones: Cones) -> None:
         self._loads, self._cones = soil_bearing(problem), cones
-        columns = [cones.loads(problem.of_load(load)) for load in self._loads]
+        columns = [cones.loads(problem.assembly.of_load(load)) for load in self._loads]
         self._columns: Any = sparse.csc_array(np.array(columns).reshape(len(columns), -1).T)
 
     def most(
@@ -118,10 +113,10 @@ def settled(problem: Problem, live: Array | None = None) -> Problem:
     cones = Cones(problem)
     bearing = Bearing(problem, cones)
     if live is None:
-        column, pull = cones.balance @ cones.bounded[:, None], problem.pull()
+        column, pull = cones.balance @ cones.bounded[:, None], problem.applied_forces()
         bounds = (-1e3, 1.0)
     else:
-        column, pull = cones.loads(live)[:, None], problem.with_load(0.0).pull()
+        column, pull = cones.loads(live)[:, None], problem.with_load(0.0).applied_forces()
         bounds = (-math.inf, math.inf)
     found, shares = bearing.most(sparse.csc_array(column), -cones.loads(pull), bounds)
     if not found.exists:

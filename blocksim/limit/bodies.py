@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.bodies import connected, parting
 from blocksim.blocks.problem import Problem
 from blocksim.common.conic import solved_cones
-from blocksim.common.later import Library
+from blocksim.common.later import sparse
 from blocksim.limit.cones import Cones
-
-if TYPE_CHECKING:
-    from scipy import sparse
-    from scipy.sparse import csgraph
-else:
-    sparse, csgraph = Library("scipy.sparse"), Library("scipy.sparse.csgraph")
 
 ALIKE = 1e-7
 """Rates at a joint, over the largest, up to which its blocks move as one."""
@@ -31,22 +26,13 @@ SHARE = 0.25
 
 def alike(problem: Problem, cones: Cones, rates: Array) -> list[int]:
     """Return the body of each block, of those that rates do not part; `SUPPORT` at rest."""
-    joints, sides = problem.assembly.joint_arrays, problem.assembly.sides
-    moved = np.vstack([rates, np.zeros(PLANAR)])[sides]
-    arms = joints.ends[None] - problem.assembly.built[sides, None, :2]
-    across = np.stack([-arms[..., 1], arms[..., 0]], axis=-1)
-    ways = moved[..., None, :2] + moved[..., None, 2:] * across
-    apart = cones.unit * np.abs(ways[1] - ways[0]).max(axis=(1, 2))
-    turn = cones.unit * np.abs(moved[1, :, 2] - moved[0, :, 2])
-    reach = np.append(problem.assembly.reach / problem.assembly.size, math.inf)[sides].min(
-        axis=0
-    )
-    apart = np.maximum(apart, turn * reach)
+    assembly, count = problem.assembly, len(rates)
+    ways, turns = parting(assembly, rates)
+    reach = np.append(assembly.reach / assembly.size, math.inf)[assembly.sides].min(axis=0)
+    apart = cones.unit * np.maximum(np.abs(ways).max(axis=(1, 2)), np.abs(turns) * reach)
     together = apart <= ALIKE * float(apart.max())
-    count = len(rates)
-    one, other = (np.where(side == SUPPORT, count, side)[together] for side in sides)
-    graph = sparse.coo_array((np.ones(len(one)), (one, other)), shape=(count + 1, count + 1))
-    label = csgraph.connected_components(graph, directed=False)[1]
+    one, other = np.where(assembly.sides == SUPPORT, count, assembly.sides)[:, together]
+    label = connected(count + 1, one, other)
     free = label[:-1] != label[-1]
     owner = np.full(count, SUPPORT, dtype=np.int64)
     owner[free] = np.unique(label[:-1][free], return_inverse=True)[1]
@@ -69,7 +55,7 @@ def widened(problem: Problem, cones: Cones, rates: Array) -> Array | None:
     (blocks, 3) float or None
         None where no such motion is known, as with friction without bound.
     """
-    pull = problem.pull()
+    pull = problem.applied_forces()
     work = float((pull * rates).sum())
     if (cones.bounded == 0).any() or work <= 0:
         return None
@@ -96,5 +82,5 @@ def _opening(cones: Cones) -> Array | None:
         refined=False,
     )
     motion: Array = np.array(found.x)
-    opens = str(found.status) == "Solved" and (rows @ motion).min() > ENOUGH
+    opens = str(found.status) == "Solved" and (rows @ motion).min(initial=math.inf) > ENOUGH
     return motion.reshape(cones.shape) * cones.ease if opens else None

@@ -10,25 +10,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
-from blocksim.common.later import Library
+from blocksim.common.later import sparse, sparse_linalg
 from blocksim.limit.bearing import Bearing, bears, settled
 from blocksim.limit.cones import ROUND_OFF, Cones
 from blocksim.limit.crushing import Crushing
 from blocksim.limit.linear import LinearProgramme, Optimum
 from blocksim.limit.programme import most, most_common, scaled
-from blocksim.limit.symmetry import symmetric_forces, symmetric_rates
-
-if TYPE_CHECKING:
-    from scipy import sparse
-    from scipy.sparse import linalg
-else:
-    sparse, linalg = Library("scipy.sparse"), Library("scipy.sparse.linalg")
+from blocksim.limit.symmetry import mirror_of
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,11 +57,12 @@ class Capacity:
 
     def __init__(self, problem: Problem) -> None:
         self.cones = Cones(problem)
-        self._dead = problem.with_load(0.0).pull()
-        self._solver = LinearProgramme()
-        crushes = problem.strength is not None
+        self._dead = problem.with_load(0.0).applied_forces()
+        self._solver, self._shares = LinearProgramme(), LinearProgramme()
+        self._shared = False
+        strength = problem.strength
         self._bearing = Bearing(problem, self.cones) if bears(problem) else None
-        self._crushing = Crushing(problem, self.cones) if crushes else None
+        self._crushing = None if strength is None else Crushing(problem, self.cones, strength)
 
     def of(self, live: Array) -> Collapse:
         """Find the largest factor on live loads.
@@ -87,6 +82,40 @@ class Capacity:
             return self._collapse(self._crushing.most(column, right))
         return self._collapse(most(cones, column, right, (-math.inf, math.inf), self._solver))
 
+    def gauge(self, live: Array) -> float:
+        """Return the inverse of the largest factor on live loads of a structure that stands.
+
+        It is the least share of what acts always that has to be there beside the live loads.
+        These are on the right side of a programme of which nothing else changes.
+
+        Parameters
+        ----------
+        live : (blocks, 3) float
+            As of `of`, not all 0.
+        """
+        if self._bearing is not None or self._crushing is not None:
+            factor = self.of(live).load_factor
+            return math.inf if factor is None else 1 / factor
+        cones = self.cones
+        dead, loads = cones.loads(self._dead), cones.loads(live)
+        # As large as what acts always: HiGHS's tolerances are of numbers near 1.
+        size = float(np.abs(dead).sum() / np.abs(loads).sum())
+        right = -size * loads
+        rows = right, right
+        found = self._shares.again(rows) if self._shared else None
+        if found is None:
+            low, high = (
+                np.append(each, end)
+                for each, end in zip(cones.bounds, (0, math.inf), strict=True)
+            )
+            cost = np.append(np.zeros(cones.count), 1.0)
+            matrix = sparse.hstack(
+                [cones.balance, sparse.csc_array(dead[:, None])], format="csc"
+            )
+            found = self._shares.solve(cost, matrix, rows, (low, high))
+            self._shared = found.exists
+        return float(found.values[-1]) / size if found.exists else math.inf
+
     def _collapse(self, found: Optimum) -> Collapse:
         cones = self.cones
         if found.unbounded:
@@ -99,24 +128,29 @@ class Capacity:
             mechanism=scaled(cones.rates(found.prices[: cones.balance.shape[0]])),
         )
 
-    def at_most(self, live: Array) -> float:
-        """Bound the inverse of the load factor of a small load from above.
+    def at_most(self, lives: Array) -> Array:
+        """Bound the inverse of the load factors of small loads from above, (loads,).
 
-        Forces that balance it are added to a state of equilibrium under what acts always, in
+        Forces that balance each are added to a state of equilibrium under what acts always, in
         which every contact presses. They need not be the best ones: near 0 that is no matter.
+
+        Parameters
+        ----------
+        lives : (loads, blocks, 3) float
+            As of `of`.
         """
         at_rest, spread, balanced = self._at_rest
         if at_rest is None:
-            return math.inf
-        right = -self.cones.loads(live)
+            return np.full(len(lives), math.inf)
+        right = -(lives * self.cones.ease).reshape(len(lives), -1).T
         added = spread @ balanced(right)
-        if np.abs(self.cones.balance @ added - right).max() > ROUND_OFF * np.abs(right).max():
-            return math.inf
+        left = np.abs(self.cones.balance @ added - right).max(axis=0)
         presses = self.cones.bounded > 0
-        least = max(0.0, float((-added[presses] / at_rest[presses]).max()))
+        least = (-added[presses] / at_rest[presses, None]).max(axis=0, initial=0.0)
         if self._crushing is not None:
-            least = max(least, self._crushing.at_most(at_rest, added))
-        return least
+            crushed = [self._crushing.at_most(at_rest, each) for each in added.T]
+            least = np.maximum(least, crushed)
+        return np.where(left > ROUND_OFF * np.abs(right).max(axis=0), math.inf, least)
 
     @cached_property
     def _at_rest(self) -> tuple[Array | None, Any, Any]:
@@ -132,41 +166,26 @@ class Capacity:
             return None, None, None
         room = np.where(cones.bounded > 0, parts, 1.0) ** 2
         spread = sparse.diags_array(room) @ cones.balance.T
-        solve: Any = linalg.splu(sparse.csc_array(cones.balance @ spread)).solve
+        solve: Any = sparse_linalg.splu(sparse.csc_array(cones.balance @ spread)).solve
         return parts, spread, solve
 
 
 def collapse(problem: Problem) -> Collapse:
-    """Find the largest factor on the live loads at which forces of equilibrium exist.
-
-    The problem's own load factor does not matter. Below 0 it falls, or crushes, without them.
-
-    Parameters
-    ----------
-    problem : Problem
-        In its plane, with live loads. Where it has a strength its blocks crush
-        (`limit.crushing`).
-
-    Returns
-    -------
-    Collapse
+    """Do in the plane what `limit.collapse` does; blocks with a strength crush.
 
     Raises
     ------
     InputError
         If nothing is known that a strength could be compared with.
     """
-    still = np.zeros((len(problem.assembly.blocks), 3))
-    live = sum((problem.of_load(load) for load in problem.live), still)
+    live = problem.live_forces
     problem = settled(problem, live)
-    capacity = Capacity(problem)
-    found, at_rest = capacity.of(live), problem.with_load(0.0)
+    found, mirror = Capacity(problem).of(live), mirror_of(problem.with_load(0.0), live)
+    if mirror is None:
+        return found
+    forces, mechanism = found.forces, found.mechanism
     return replace(
         found,
-        forces=found.forces
-        if found.forces is None
-        else symmetric_forces(at_rest, found.forces, live),
-        mechanism=found.mechanism
-        if found.mechanism is None
-        else symmetric_rates(at_rest, found.mechanism, live),
+        forces=None if forces is None else mirror.forces(forces),
+        mechanism=None if mechanism is None else mirror.rates(mechanism),
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -88,14 +89,14 @@ class Carried:
         unit = self.problem.unit_force
         return self.least.thrust * unit, self.greatest.thrust * unit
 
-    @property
+    @cached_property
     def resultants(self) -> Resultants | None:
         """What each joint carries in the safest state; None where it falls."""
         if self.forces is None or not self.stands:
             return None
         return resultants(self.problem, self.forces)
 
-    @property
+    @cached_property
     def reactions(self) -> tuple[Reaction, ...]:
         """What the supports bear in the safest state; nothing where it falls."""
         if self.forces is None or not self.stands:
@@ -135,10 +136,6 @@ def carried_by(
         Where thrust is asked for; by default at the crown (`blocksim.limit.margins.crown`).
     needed : Needed, optional
         The least strength of blocks that crush.
-
-    Returns
-    -------
-    Carried
     """
     found = margins(problem)
     joint = crown(problem) if joint is None else joint
@@ -148,10 +145,12 @@ def carried_by(
     least = found.friction if len(mu) == 1 else None
     if least is not None and math.isfinite(problem.mu):
         least *= mu.pop()
+    # Of friction without bound a share is nothing.
+    rubs = found.friction and (0.0 if np.isinf(problem.friction).any() else found.friction)
     return Carried(
         problem=problem,
         geometrical_factor=inverse(found.width),
-        friction_factor=factor_of(found.friction, problem),
+        friction_factor=inverse(rubs),
         least_friction=least,
         strength_used=found.strength,
         joint=joint,
@@ -160,13 +159,6 @@ def carried_by(
         forces=found.forces if needed is None else needed.forces,
         needed=needed,
     )
-
-
-def factor_of(share: float | None, problem: Problem) -> float | None:
-    """Return friction over what is needed, of which the share is known."""
-    if share is not None and np.isinf(problem.friction).any():
-        return math.inf
-    return inverse(share)
 
 
 def inverse(share: float | None) -> float | None:

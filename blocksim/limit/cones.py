@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +13,7 @@ from numpy.typing import NDArray
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.rows import column
-from blocksim.common.later import Library
-
-if TYPE_CHECKING:
-    from scipy import sparse
-    from scipy.sparse import linalg
-else:
-    sparse, linalg = Library("scipy.sparse"), Library("scipy.sparse.linalg")
+from blocksim.common.later import sparse, sparse_linalg
 
 ROUND_OFF = 1e-9
 """Lack of force that is round-off, over what the joint or the block carries."""
@@ -167,7 +161,7 @@ class Cones:
             return parts
         # In proportion to what presses, so that it stays within the cones.
         room = np.where(self.bounded > 0, np.maximum(parts, 0.0), 1.0)
-        solve: Any = linalg.lsmr
+        solve: Any = sparse_linalg.lsmr
         scaled = self.balance @ sparse.diags_array(room)
         change = room * solve(scaled, left, atol=1e-15, btol=1e-15)[0]
         better = parts + change
@@ -225,7 +219,7 @@ def carried_weights(problem: Problem) -> Array:
         In mean weights.
     """
     assembly = problem.assembly
-    pull = problem.pull()
+    pull = problem.applied_forces()
     found = assembly.masses[:, 0] + np.hypot(pull[:, 0], pull[:, 1])
     found += np.abs(pull[:, 2]) * assembly.size / assembly.reach
     neighbours: list[set[int]] = [set[int]() for _ in range(len(found))]

@@ -8,27 +8,21 @@ of the second order, also where the strength is sought, in proportion to which P
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
-from blocksim.common.checks import STRENGTH, require
+from blocksim.common.checks import require
 from blocksim.common.conic import Cone, solved_cones
 from blocksim.common.errors import Unsolved
-from blocksim.common.later import Library
+from blocksim.common.later import sparse
 from blocksim.limit.bearing import bears
 from blocksim.limit.cones import Cones, joint_areas
 from blocksim.limit.linear import NONE, UNBOUNDED, Optimum
-from blocksim.limit.programme import equilibrium, scaled
-
-if TYPE_CHECKING:
-    from scipy import sparse
-else:
-    sparse = Library("scipy.sparse")
+from blocksim.limit.programme import scaled
 
 FINEST = 1e-11
 """Gap and residuals at which the solver may end; it ends where it gets no farther."""
@@ -75,20 +69,17 @@ class Crushing:
         In its plane, with weights and sizes.
     cones : Cones
         Of the problem.
-    strength : float, optional
-        Compressive strength [Pa]; by default the problem's own.
+    strength : float
+        Compressive strength [Pa], of any size.
 
     Raises
     ------
     InputError
-        If the strength is out of range, there are no weights or sizes to compare it with, or a
-        corner bears a block: a point bears nothing then.
+        If there are no weights or sizes to compare the strength with, or a corner bears a
+        block: a point bears nothing then.
     """
 
-    def __init__(self, problem: Problem, cones: Cones, strength: float | None = None) -> None:
-        strength = problem.strength if strength is None else strength
-        STRENGTH.require("strength", strength)
-        assert strength is not None  # noqa: S101 - required
+    def __init__(self, problem: Problem, cones: Cones, strength: float) -> None:
         require_sizes(problem)
         crushing = strength * joint_areas(problem) / problem.unit_force
         # Both ends of each joint.
@@ -221,7 +212,7 @@ def strength_needed(problem: Problem) -> Needed | None:
         If the solver gives up.
     """
     require_sizes(problem)
-    cones, pull = Cones(problem), problem.pull()
+    cones, pull = Cones(problem), problem.applied_forces()
     # Of which joints bear about what blocks weigh, so that its multiples are numbers near 1.
     unit = float(np.median(problem.unit_force * cones.unit / joint_areas(problem)))
     for _ in range(TRIES):
@@ -248,24 +239,6 @@ def _needed(cones: Cones, crushing: Crushing, found: Optimum, unit: float) -> Ne
         forces=cones.forces(parts),
         mechanism=scaled(cones.rates(found.prices[: cones.balance.shape[0]])),
     )
-
-
-def standing_margin(problem: Problem) -> float:
-    """Return a number that is below 0 where blocks fall: how far, without a unit.
-
-    The margin of `Equilibrium`; of blocks that crush the share of the strength that is left.
-    """
-    if problem.strength is None:
-        return equilibrium(problem).margin
-    needed = strength_needed(problem)
-    return -math.inf if needed is None else 1 - needed.high / problem.strength
-
-
-def exists(problem: Problem) -> bool:
-    """Tell whether forces of equilibrium exist, within the strength where there is one."""
-    if problem.strength is None:
-        return equilibrium(problem).exists
-    return standing_margin(problem) >= 0
 
 
 def require_sizes(problem: Problem) -> None:

@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.blocks.space.points import JointPoints
-from blocksim.blocks.space.polyhedron import frame
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.blocks.space.polyhedron import Vector, across
+from blocksim.limit.bearing import bears
 from blocksim.limit.cones import carried_weights, joint_weights
 
 MOST = 1.0
@@ -37,7 +38,7 @@ def margin_of_stack(problem: Problem) -> float | None:
     -------
     float or None
         None where blocks reach the ground in more ways than one, where a corner rests on a
-        face, or where friction is 0 or has no bound.
+        face, where friction is 0 or has no bound, or where soil bears what moves into it.
 
     Examples
     --------
@@ -47,9 +48,9 @@ def margin_of_stack(problem: Problem) -> float | None:
     """
     assembly, mu = problem.assembly, problem.friction
     joints = assembly.joint_arrays
-    if joints.is_corner.any() or not (np.isfinite(mu) & (mu > 0)).all():
+    if joints.is_corner.any() or not (np.isfinite(mu) & (mu > 0)).all() or bears(problem):
         return None
-    pull = problem.pull()
+    pull = problem.applied_forces()
     arms = assembly.built[:-1, :2]
     pull[:, 2] += arms[:, 0] * pull[:, 1] - arms[:, 1] * pull[:, 0]
     sums = _carried(assembly.sides, pull)
@@ -69,12 +70,8 @@ def margin_of_stack(problem: Problem) -> float | None:
     return min(MOST, float((spare * np.maximum(1.0, mu) / (2 * unit)).min()))
 
 
-def margin_of_tower(problem: SpatialProblem) -> float | None:
+def margin_of_tower(problem: Problem[SpatialAssembly]) -> float | None:
     """Return the margin of `can_rest`, of a tower in which nothing rubs.
-
-    Parameters
-    ----------
-    problem : SpatialProblem
 
     Returns
     -------
@@ -83,13 +80,12 @@ def margin_of_tower(problem: SpatialProblem) -> float | None:
         carries a force across or a moment about its normal, or would have to pull as a whole.
     """
     assembly = problem.assembly
-    sides = np.array([(each.before, each.after) for each in assembly.joints]).reshape(-1, 2).T
-    pull = problem.fixed_pull + problem.load * problem.live_pull
+    pull = problem.applied_forces() * problem.assembly.units
     pull[:, 3:] += np.cross(assembly.centres, pull[:, :3])
-    sums = _carried(sides, pull)
+    sums = _carried(assembly.sides, pull)
     if sums is None:
         return None
-    own, margin = JointPoints(problem).own * assembly.weights.mean(), MOST
+    own, margin = JointPoints(problem).own * problem.unit_force, MOST
     first = 0
     for joint, mu, (x, y, z, *turning) in zip(
         assembly.joints, problem.friction.tolist(), sums.tolist(), strict=True
@@ -103,7 +99,7 @@ def margin_of_tower(problem: SpatialProblem) -> float | None:
 
 
 def _pressed(
-    points: Array, normal: Array, mu: float, force: tuple[float, ...], turning: list[float]
+    points: Array, normal: Array, mu: float, force: Vector, turning: list[float]
 ) -> float | None:
     """Return how hard all corners of a face can press at once, which carries a force [N].
 
@@ -111,22 +107,33 @@ def _pressed(
     on the ray from the corners' middle through that place, and leaves the face at its rim.
     """
     count = len(points)
-    along = float(np.dot(force, normal))
-    middle = points.sum(axis=0) / count
-    about = np.array(turning) - np.cross(middle, force)
-    reach = float(np.abs(points - middle).max())
-    across = np.abs(np.array(force) - along * normal).max()
-    rubs = max(float(across), abs(float(about @ normal)) / reach)
+    a, b, c = normal.tolist()
+    x, y, z = force
+    along = a * x + b * y + c * z
+    corners = points.tolist()
+    u, v, w = (sum(each) / count for each in zip(*corners, strict=True))
+    away = [(i - u, j - v, k - w) for i, j, k in corners]
+    i, j, k = turning
+    # The moment about the corners' middle.
+    i, j, k = i - (v * z - w * y), j - (w * x - u * z), k - (u * y - v * x)
+    reach = max(abs(each) for spot in away for each in spot)
+    aside = max(abs(x - along * a), abs(y - along * b), abs(z - along * c))
+    rubs = max(aside, abs(i * a + j * b + k * c) / reach)
     if count < 3 or not along > 0 or not rubs <= RUBS * along * min(mu, 1.0):
         return None
-    axes = frame(normal)
-    x, y = (axes @ np.cross(normal, about) / along).tolist()
-    corners = ((points - middle) @ axes.T).tolist()
+    first, second = across((a, b, c))
+    place = b * k - c * j, c * i - a * k, a * j - b * i
+    x, y = _dot(first, place) / along, _dot(second, place) / along
+    spots = [(_dot(first, each), _dot(second, each)) for each in away]
     share = 0.0
-    for (a, b), (c, d) in zip(corners, corners[1:] + corners[:1], strict=True):
+    for (a, b), (c, d) in zip(spots, spots[1:] + spots[:1], strict=True):
         # On which side of the edge the place is, over that of the middle.
         share = max(share, (x * (d - b) - y * (c - a)) / (a * (d - b) - b * (c - a)))
     return along / count * (1.0 - share)
+
+
+def _dot(one: Vector, other: Vector) -> float:
+    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 
 def _carried(sides: NDArray[np.int64], pull: Array) -> Array | None:

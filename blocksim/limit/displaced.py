@@ -57,15 +57,10 @@ class Frame:
     @property
     def states(self) -> tuple[JointState, ...]:
         """What each joint does."""
-        return tuple(_STATES[inner, outer] for inner, outer in self.closed.tolist())
-
-
-_STATES = {
-    (True, True): JointState.CLOSED,
-    (True, False): JointState.HINGE_INTRADOS,
-    (False, True): JointState.HINGE_EXTRADOS,
-    (False, False): JointState.OPEN,
-}
+        return tuple(
+            JointState.of(inner=not inner, outer=not outer)
+            for inner, outer in self.closed.tolist()
+        )
 
 
 class Displaced:
@@ -270,7 +265,7 @@ class Displaced:
 
     def energy(self, frame: Frame) -> float:
         """Return the potential energy [mean weight times size], 0 where they were built."""
-        return -float((self._problem.pull() * (frame.poses - self.start.poses)).sum())
+        return -float((self._problem.applied_forces() * (frame.poses - self.start.poses)).sum())
 
     def free(self, frame: Frame) -> Array:
         """Return motions on supports at rest in which all closed contacts stay closed."""

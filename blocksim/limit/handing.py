@@ -5,18 +5,13 @@ from __future__ import annotations
 import heapq
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
-from blocksim.common.later import Library
+from blocksim.common.later import linalg
 from blocksim.limit.exact import Exact, Number
-
-if TYPE_CHECKING:
-    from scipy import linalg
-else:
-    linalg = Library("scipy.linalg")
 
 Column = Sequence[Number]
 """Force x, y and moment."""

@@ -7,20 +7,15 @@ fewer. Its forces balance to round-off, well within their cones, as proofs need 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.common.conic import Cone, solved_cones
-from blocksim.common.later import Library
+from blocksim.common.later import sparse
 from blocksim.limit.cones import Cones
 from blocksim.limit.linear import Optimum
-
-if TYPE_CHECKING:
-    from scipy import sparse
-else:
-    sparse = Library("scipy.sparse")
 
 FINEST = 1e-7
 """Gap and residuals at which it ends."""

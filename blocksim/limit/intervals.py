@@ -15,12 +15,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Load, Problem
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.limit.statics import collapse, equilibrium
 
 FINEST = 1e-9
@@ -41,12 +41,12 @@ class Interval:
     high: float
 
 
-def over_factor(problem: Problem | SpatialProblem) -> tuple[Interval, ...]:
+def over_factor(problem: Problem[Any]) -> tuple[Interval, ...]:
     """Find the factors on the live loads at which forces of equilibrium exist.
 
     Parameters
     ----------
-    problem : Problem or SpatialProblem
+    problem : Problem
         With live loads; a plane one with gravity in its plane. Its own load factor does not
         matter.
 
@@ -63,14 +63,12 @@ def over_factor(problem: Problem | SpatialProblem) -> tuple[Interval, ...]:
     return (Interval(low=-math.inf if least is None else -least, high=most),)
 
 
-def over_tilt(
-    problem: Problem | SpatialProblem, low: float, high: float
-) -> tuple[Interval, ...]:
+def over_tilt(problem: Problem[Any], low: float, high: float) -> tuple[Interval, ...]:
     """Find the angles by which a table tilts at which forces of equilibrium exist.
 
     Parameters
     ----------
-    problem : Problem or SpatialProblem
+    problem : Problem
         A plane one with gravity in its plane.
     low, high : float
         Range of the angles [rad], within a half turn.
@@ -83,7 +81,7 @@ def over_tilt(
     if problem.is_loaded or problem.unturned.any():
         return _joined(_Arc(problem).parts(low, high), low, high)
     across = Load(
-        force=problem.across[: problem.dimensions],
+        force=problem.across[: problem.assembly.dimensions],
         blocks=tuple(range(len(problem.assembly.blocks))),
         per_weight=True,
     )
@@ -104,13 +102,14 @@ def _angle(factor: float) -> float:
 class _Arc:
     """Gravity along an arc beside what does not turn with it: loads, and a part of gravity."""
 
-    def __init__(self, problem: Problem | SpatialProblem) -> None:
+    def __init__(self, problem: Problem[Any]) -> None:
         self._problem = problem
         still = problem.unturned
-        self._rest = replace(problem, gravity=still).pull()
+        self._rest = replace(problem, gravity=still).applied_forces()
         turning = problem.gravity - still, problem.across
         self._along, self._across = (
-            replace(problem, gravity=still + each).pull() - self._rest for each in turning
+            replace(problem, gravity=still + each).applied_forces() - self._rest
+            for each in turning
         )
         self._asked: dict[float, Array | None] = {}
 

@@ -62,7 +62,7 @@ def least_motion(problem: Problem) -> LeastMotion | None:
     solve: Any = nnls
     friction = np.where(problem.friction > ROUGH, math.inf, problem.friction)
     cones = Cones(problem, friction=friction)
-    balance, loads = cones.balance.toarray(), cones.loads(problem.pull())
+    balance, loads = cones.balance.toarray(), cones.loads(problem.applied_forces())
     masses = problem.assembly.masses.ravel()
     scale = 1 / (cones.ease.ravel() * np.sqrt(masses))
     matrix = balance * scale[:, None]

@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.common.errors import Unsolved
-from blocksim.common.later import Library
+from blocksim.common.later import Library, sparse
 
 if TYPE_CHECKING:
     import highspy
-    from scipy import sparse
 else:
-    highspy, sparse = Library("highspy"), Library("scipy.sparse")
+    highspy = Library("highspy")
 
 FINEST = 1e-10
 """HiGHS's own least tolerance."""
@@ -134,6 +133,15 @@ class LinearProgramme:
             # Nothing follows from it, least of all that nothing stands.
             raise Unsolved
         return found
+
+    def again(self, rows: Ends) -> Optimum | None:
+        """Solve the last programme with other ends of its rows; None where that tells nothing.
+
+        What was active before stays a good beginning: it takes a step or two.
+        """
+        count = len(rows[0])
+        self._highs.changeRowsBounds(count, np.arange(count, dtype=np.int32), *rows)
+        return self._found() if self._run("simplex") else None
 
     def _solve(self, cost: Array, matrix: Matrix, rows: Ends, bounds: Ends) -> Optimum | None:
         columns = sparse.csc_array(matrix)

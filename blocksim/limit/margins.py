@@ -19,7 +19,7 @@ from blocksim.limit.cones import Cones
 from blocksim.limit.crushing import Crushing
 from blocksim.limit.linear import LinearProgramme
 from blocksim.limit.programme import extreme, most_common
-from blocksim.limit.symmetry import symmetric_forces, symmetric_rates
+from blocksim.limit.symmetry import mirror_of, symmetric_forces, symmetric_rates
 
 HOPELESS = 1e3
 """Share of width or friction beyond which blocks count as never standing."""
@@ -103,13 +103,14 @@ def thrust_range(problem: Problem, joint: int) -> tuple[Thrust, Thrust] | None:
     across[joint, :, 0] = sense * arrays.normal[joint, 0]
     across[joint, :, 1] = sense * arrays.tangent[joint, 0]
     cost, ends = cones.work(across), list[Thrust]()
-    solver = LinearProgramme()
-    crushing = None if problem.strength is None else Crushing(problem, cones)
+    solver, mirror = LinearProgramme(), mirror_of(problem)
+    strength = problem.strength
+    crushing = None if strength is None else Crushing(problem, cones, strength)
     for sign in (1.0, -1.0):
         if crushing is None:
-            found = extreme(cones, sign * cost, problem.pull(), solver)
+            found = extreme(cones, sign * cost, problem.applied_forces(), solver)
         else:
-            found = crushing.extreme(sign * cost, -cones.loads(problem.pull()))
+            found = crushing.extreme(sign * cost, -cones.loads(problem.applied_forces()))
         if found.unbounded:
             ends.append(Thrust(thrust=-sign * math.inf, forces=None))
         elif not found.exists:
@@ -117,7 +118,7 @@ def thrust_range(problem: Problem, joint: int) -> tuple[Thrust, Thrust] | None:
         else:
             forces = cones.forces(found.values)
             thrust = float((across * forces).sum())
-            even = symmetric_forces(problem, forces)
+            even = forces if mirror is None else mirror.forces(forces)
             # A joint off the middle may have its extreme on its own side only.
             if abs(float((across * even).sum()) - thrust) <= NOTHING * (1 + abs(thrust)):
                 forces = even
@@ -147,10 +148,6 @@ def margins(problem: Problem) -> Margins:
     ----------
     problem : Problem
         In its plane.
-
-    Returns
-    -------
-    Margins
     """
     solver = LinearProgramme()
     width = _least_share(_Search(problem, solver, friction=False), 0.0)
@@ -233,7 +230,7 @@ class _Search:
         friction: bool = True,
     ) -> None:
         self._problem, self._width, self._friction = problem, width, friction
-        self._pull, self._solver = problem.pull(), solver
+        self._pull, self._solver = problem.applied_forces(), solver
         unbounded = np.isinf(problem.friction) if not width else np.zeros(1, dtype=bool)
         self.bounded = not unbounded.any()
         self._unit = np.where(unbounded, 1.0, problem.friction)

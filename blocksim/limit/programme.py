@@ -16,14 +16,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import Unsolved
-from blocksim.common.later import Library
+from blocksim.common.later import sparse
 from blocksim.limit.bearing import settled
 from blocksim.limit.bodies import alike, widened
 from blocksim.limit.cones import ROUND_OFF, Cones
@@ -32,11 +32,6 @@ from blocksim.limit.interior import most_inside
 from blocksim.limit.linear import MANY, LinearProgramme, Optimum
 from blocksim.limit.proof import Proof, proof_in_rationals, proof_of_fall, proof_of_rest
 from blocksim.limit.symmetry import symmetric_forces, symmetric_rates
-
-if TYPE_CHECKING:
-    from scipy import sparse
-else:
-    sparse = Library("scipy.sparse")
 
 SPARE = 1.0
 """Most that is asked for along every edge of a cone, over what its joint carries."""
@@ -82,7 +77,7 @@ class Equilibrium:
         exact = Exact(self.problem)
         if self.parts is not None and self.margin > -NEAR:
             for fine in (ROUND_OFF, FINE):
-                parts = self._cones.polished(self.parts, self.problem.pull(), fine)
+                parts = self._cones.polished(self.parts, self.problem.applied_forces(), fine)
                 found = proof_of_rest(exact, self._cones.forces(parts))
                 if found is not None:
                     return found
@@ -121,7 +116,7 @@ class Equilibrium:
         """
         if not self.exists or self.parts is None:
             return None
-        parts = self._cones.polished(self.parts, self.problem.pull())
+        parts = self._cones.polished(self.parts, self.problem.applied_forces())
         return symmetric_forces(self.problem, self._cones.forces(parts))
 
     @cached_property
@@ -137,22 +132,13 @@ class Equilibrium:
 
 
 def equilibrium(problem: Problem) -> Equilibrium:
-    """Find forces of equilibrium, all as far inside their cones of friction as possible.
+    """Do in the plane what `limit.equilibrium` does.
 
     Each force is the sum of two parts along the edges of its cone. The smallest of all these
     parts is made as large as possible.
-
-    Parameters
-    ----------
-    problem : Problem
-        In its plane.
-
-    Returns
-    -------
-    Equilibrium
     """
     problem = settled(problem)
-    cones, pull = Cones(problem), problem.pull()
+    cones, pull = Cones(problem), problem.applied_forces()
     try:
         found = _clear(cones, pull) if cones.count > MANY else None
         found = most_common(cones, pull) if found is None else found
@@ -212,7 +198,7 @@ def settling(problem: Problem, supports: Array) -> Array | None:
         Velocities x, y and rotation of the blocks; None where there is no equilibrium.
     """
     cones = Cones(problem)
-    found = extreme(cones, cones.at_supports(supports), problem.pull())
+    found = extreme(cones, cones.at_supports(supports), problem.applied_forces())
     return cones.rates(found.prices) if found.exists else None
 
 
@@ -231,7 +217,7 @@ def falling(problem: Problem) -> Array | None:
         loads do no work in any.
     """
     cones = Cones(problem)
-    pull = cones.loads(problem.pull())
+    pull = cones.loads(problem.applied_forces())
     # Rates at contacts: what presses may part, what only rubs stays.
     most = np.where(cones.bounded > 0, math.inf, 0.0)
     ones = np.ones(pull.size)

@@ -18,15 +18,14 @@ import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.common.errors import Unsolved
-from blocksim.common.later import Library
+from blocksim.common.later import Library, sparse
 from blocksim.limit.exact import NOTHING, Exact, Point
 from blocksim.limit.linear import LinearProgramme
 
 if TYPE_CHECKING:
     import flint
-    from scipy import sparse
 else:
-    sparse, flint = Library("scipy.sparse"), Library("flint")
+    flint = Library("flint")
 
 LARGEST = 300
 """Most equations that are solved in rational numbers."""

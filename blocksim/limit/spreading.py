@@ -7,22 +7,27 @@ geometry alone, however far they move (Ochsendorf 2006). An event is a contact t
 again, or forces that no longer fit: then the blocks move with the supports at rest, along the
 mechanism of the linear programme, until a contact that closes holds them, or they fall.
 
+Where several motions lose as much energy at first, as those of an arch whose halves mirror each
+other do, one of them may balance like a pencil on its tip: of such a path there is none in
+nature. Of the motions with which blocks rest a little farther on they take the one of least
+energy.
+
 Contacts neither slip nor part here. Where they would, the path ends and says so.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from scipy.optimize import brentq
 
-from blocksim.blocks.problem import Problem
-from blocksim.limit.branches import follows
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.problem import Load, Problem
 from blocksim.limit.displaced import ENOUGH, Displaced, Frame, Lost
-from blocksim.limit.programme import falling
+from blocksim.limit.programme import falling, settling
 
 Ends = Literal["collapse", "slides", "parts", "range"]
 FALLS = {"snaps", "collapse", "falls-slides", "falls-parts"}
@@ -33,6 +38,10 @@ WAY = 5e-3
 """Way of the fastest corner in one step of a fall [size]."""
 FALLEN = 0.2
 """Way in a fall after which nothing is expected to hold the blocks [size]."""
+AHEAD = 1e-4
+"""How far ahead motions are compared that are alike at first [size]."""
+PUSHED = 1e-7
+"""Body force that tells motions apart which are alike [weights]."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -102,17 +111,13 @@ def follow(problem: Problem, highest: float, steps: int = 100) -> Path:
         How far the supports move at most [m].
     steps : int
         Positions on the way at which events are looked for between.
-
-    Returns
-    -------
-    Path
     """
     blocks = Displaced(problem)
     frame = blocks.start
     frames, events = [frame], list[Event]()
     if blocks.margin(frame) < -ENOUGH:
         return Path(frames=(frame,), events=(), ends="collapse")
-    frame, lost = follows(blocks, frame)
+    frame, lost = _follows(blocks, frame)
     events.append(Event(what="hinges", before=frames[0], after=frame))
     frames.append(frame)
     grid = np.linspace(0, highest, steps + 1)[1:].tolist()
@@ -134,13 +139,13 @@ def follow(problem: Problem, highest: float, steps: int = 100) -> Path:
                 events.append(Event(what=what, before=before, after=after))
                 return Path(frames=tuple(frames), events=tuple(events), ends="collapse")
             at = caught
-        frame, lost = follows(blocks, at)
+        frame, lost = _follows(blocks, at)
         events.append(Event(what=lost or what, before=before, after=frame))
         frames += [before, frame]
     return Path(frames=tuple(frames), events=tuple(events), ends=lost or "range")
 
 
-def lying(problem: Problem, path: Path, value: float) -> Problem:
+def displaced_at(problem: Problem, path: Path, value: float) -> Problem:
     """Return a problem as it lies where the supports have moved so far.
 
     Contacts that are open are none; beyond the end of the path the last hinges go on.
@@ -213,3 +218,55 @@ def _falls(blocks: Displaced, frame: Frame) -> tuple[Frame | None, Frame | None,
         now = blocks.shut(_where(blocks, blocks.closing, now, ahead)) if shuts else ahead
         way += WAY / 100 if shuts else WAY
     return None, first, None
+
+
+def _follows(blocks: Displaced, frame: Frame) -> tuple[Frame, Lost | None]:
+    """Open contacts as the supports move on; return what else a joint does, which ends it."""
+    lies, speeds = blocks.problem(frame), blocks.speeds(frame.value)
+    rates = settling(lies, speeds)
+    if rates is None:
+        return frame, None
+    after, lost = blocks.opened(frame, rates, 1.0)
+    found = [after]
+    for way in () if lost else _ways(blocks, after):
+        leaning = settling(_pushed(lies, way), speeds)
+        if leaning is None:
+            continue
+        turned, slips = blocks.opened(frame, leaning, 1.0)
+        if slips is None and blocks.closing(_ahead(blocks, turned)) > 0:
+            found.append(turned)
+    if len(found) == 1:
+        return after, lost
+
+    def rank(one: Frame) -> tuple[bool, float]:
+        ahead = _ahead(blocks, one)
+        return blocks.margin(ahead) < -ENOUGH, blocks.energy(ahead)
+
+    return min(found, key=rank), None
+
+
+def _ahead(blocks: Displaced, frame: Frame) -> Frame:
+    """Carry the blocks a little farther on."""
+    return blocks.carried(frame, frame.value + AHEAD * blocks.size)
+
+
+def _ways(blocks: Displaced, frame: Frame) -> Array:
+    """Return motions on supports at rest that blocks may take a little farther on.
+
+    Those in which all closed contacts stay closed, both ways; else that in which they fall.
+    """
+    free, ahead = blocks.free(frame), _ahead(blocks, frame)
+    if len(free) or blocks.margin(ahead) >= -ENOUGH:
+        return np.concatenate([free, -free])
+    falls = falling(blocks.problem(ahead)) if blocks.fit(ahead) else None
+    return free if falls is None else falls[None]
+
+
+def _pushed(problem: Problem, way: Array) -> Problem:
+    """Return a problem whose blocks are pushed a little along a motion."""
+    largest = np.abs(way).max()
+    pushes = tuple(
+        Load(force=PUSHED * each[:2] / largest, blocks=(index,), per_weight=True)
+        for index, each in enumerate(way)
+    )
+    return replace(problem, dead=(*problem.dead, *pushes))

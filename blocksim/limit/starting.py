@@ -24,7 +24,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,14 +32,9 @@ from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.groups import groups_of
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import require
-from blocksim.common.later import Library
+from blocksim.common.later import sparse
 from blocksim.limit.linear import choose
 from blocksim.limit.programme import equilibrium
-
-if TYPE_CHECKING:
-    from scipy import sparse
-else:
-    sparse = Library("scipy.sparse")
 
 LEAST_POWER = 1e-7
 """Power of the loads up to which nothing moves, over that of the fall without contacts; times
@@ -85,10 +79,6 @@ def may_start(problem: Problem, *, seconds: float = SECONDS) -> Start:
         In its plane, with bounded friction.
     seconds : float
         Time after which it gives up.
-
-    Returns
-    -------
-    Start
 
     Raises
     ------
@@ -176,10 +166,10 @@ class _Law:
 
     def __init__(self, problem: Problem) -> None:
         # Forces are in units of the sum of all loads.
-        unit = float(np.abs(problem.pull()[:, :2]).sum()) or 1.0
+        unit = float(np.abs(problem.applied_forces()[:, :2]).sum()) or 1.0
         self._unit, self._shape = unit, problem.assembly.masses.shape
         self._root = np.sqrt(problem.assembly.masses.ravel() / unit)
-        free = problem.pull().ravel() / unit / self._root
+        free = problem.applied_forces().ravel() / unit / self._root
         self.fall = float(free @ free)
         of_blocks = (free**2).reshape(self._shape).sum(axis=1)
         mean = self.fall / len(of_blocks) or 1.0

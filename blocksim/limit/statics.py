@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, overload
+import math
+from typing import TYPE_CHECKING, Any, overload
 
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
-from blocksim.limit import crushing
+from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.limit.capacity import collapse as collapse_in_plane
+from blocksim.limit.crushing import strength_needed
 from blocksim.limit.programme import equilibrium as equilibrium_in_plane
 
 if TYPE_CHECKING:
@@ -19,22 +20,29 @@ if TYPE_CHECKING:
 @overload
 def equilibrium(problem: Problem) -> Equilibrium: ...
 @overload
-def equilibrium(problem: SpatialProblem) -> SpatialEquilibrium: ...
+def equilibrium(problem: Problem[SpatialAssembly]) -> SpatialEquilibrium: ...
 @overload
-def equilibrium(problem: Problem | SpatialProblem) -> Equilibrium | SpatialEquilibrium: ...
-def equilibrium(problem: Problem | SpatialProblem) -> Equilibrium | SpatialEquilibrium:
+def equilibrium(problem: Problem[Any]) -> Equilibrium | SpatialEquilibrium: ...
+def equilibrium(problem: Problem[Any]) -> Equilibrium | SpatialEquilibrium:
     """Find forces of equilibrium, all as far inside their cones of friction as possible.
 
     Parameters
     ----------
-    problem : Problem or SpatialProblem
+    problem : Problem
 
     Returns
     -------
     Equilibrium or SpatialEquilibrium
         See `blocksim.limit.programme` and `blocksim.limit.space`.
+
+    Examples
+    --------
+    >>> from blocksim import Column
+    >>> found = equilibrium(Column(drums=3, drum_height=1, width=1, friction=0.5).problem())
+    >>> found.exists, round(found.margin, 6), found.forces.shape
+    (True, 0.125, (3, 2, 2))
     """
-    if isinstance(problem, Problem):
+    if not problem.in_space:
         return equilibrium_in_plane(problem)
     # Cones are loaded where they are asked for.
     from blocksim.limit.space import can_rest
@@ -45,42 +53,53 @@ def equilibrium(problem: Problem | SpatialProblem) -> Equilibrium | SpatialEquil
 @overload
 def collapse(problem: Problem) -> Collapse: ...
 @overload
-def collapse(problem: SpatialProblem) -> SpatialCollapse: ...
+def collapse(problem: Problem[SpatialAssembly]) -> SpatialCollapse: ...
 @overload
-def collapse(problem: Problem | SpatialProblem) -> Collapse | SpatialCollapse: ...
-def collapse(problem: Problem | SpatialProblem) -> Collapse | SpatialCollapse:
+def collapse(problem: Problem[Any]) -> Collapse | SpatialCollapse: ...
+def collapse(problem: Problem[Any]) -> Collapse | SpatialCollapse:
     """Find the largest factor on the live loads at which forces of equilibrium exist.
 
     The problem's own load factor does not matter. Below 0 it falls, or crushes, without them.
 
     Parameters
     ----------
-    problem : Problem or SpatialProblem
+    problem : Problem
         With live loads.
 
     Returns
     -------
     Collapse or SpatialCollapse
         See `blocksim.limit.capacity.collapse` and `blocksim.limit.space.largest_load`.
+
+    Examples
+    --------
+    >>> from blocksim import load_structure
+    >>> round(collapse(load_structure("oppenheim_7")).load_factor, 6)
+    0.370534
     """
-    if isinstance(problem, Problem):
+    if not problem.in_space:
         return collapse_in_plane(problem)
     from blocksim.limit.space import largest_load
 
     return largest_load(problem)
 
 
-def standing_margin(problem: Problem | SpatialProblem) -> float:
-    """Return a number that is below 0 where blocks fall: how far, without a unit."""
-    if isinstance(problem, Problem):
-        return crushing.standing_margin(problem)
+def standing_margin(problem: Problem[Any]) -> float:
+    """Return a number that is below 0 where blocks fall: how far, without a unit.
+
+    The margin of `equilibrium`; of blocks that crush the share of the strength that is left.
+    """
+    if not problem.in_space and problem.strength is not None:
+        needed = strength_needed(problem)
+        return -math.inf if needed is None else 1 - needed.high / problem.strength
     return equilibrium(problem).margin
 
 
-def exists(problem: Problem | SpatialProblem) -> bool | None:
-    """Tell whether forces of equilibrium exist; None in space where that is not told."""
-    return (
-        crushing.exists(problem)
-        if isinstance(problem, Problem)
-        else equilibrium(problem).exists
-    )
+def exists(problem: Problem[Any]) -> bool | None:
+    """Tell whether forces of equilibrium exist, within the strength where there is one.
+
+    None in space where that is not told.
+    """
+    if problem.strength is not None:
+        return standing_margin(problem) >= 0
+    return equilibrium(problem).exists

@@ -59,27 +59,27 @@ class Mirror:
         return (forces + image) / 2
 
 
-def symmetric_forces(problem: Problem, forces: Array, *pulls: Array) -> Array:
+def symmetric_forces(problem: Problem, forces: Array) -> Array:
     """Return forces that are symmetric where the structure, and all that acts on it, is."""
-    mirror = mirror_of(problem, problem.pull(), *pulls)
+    mirror = mirror_of(problem)
     return forces if mirror is None else mirror.forces(forces)
 
 
-def symmetric_rates(problem: Problem, rates: Array, *pulls: Array) -> Array:
+def symmetric_rates(problem: Problem, rates: Array) -> Array:
     """Return rates of blocks that are symmetric where the structure, and all else, is."""
-    mirror = mirror_of(problem, problem.pull(), *pulls)
+    mirror = mirror_of(problem)
     return rates if mirror is None else mirror.rates(rates)
 
 
-def mirror_of(problem: Problem, *pulls: Array) -> Mirror | None:
-    """Find how a structure is its own mirror image about an upright axis.
+def mirror_of(problem: Problem, *others: Array) -> Mirror | None:
+    """Find how a structure, and all that acts on it, is its own mirror image, left to right.
 
     Parameters
     ----------
     problem : Problem
         In its plane.
-    *pulls : (blocks, 3) float
-        Forces and moments on the blocks, which have to be symmetric as well.
+    *others : (blocks, 3) float
+        Further forces and moments on the blocks, which have to be symmetric as well.
 
     Returns
     -------
@@ -89,6 +89,8 @@ def mirror_of(problem: Problem, *pulls: Array) -> Mirror | None:
     assembly, arrays = problem.assembly, problem.assembly.joint_arrays
     centres = assembly.built[:-1, :2]
     ends = arrays.ends.reshape(-1, 2)
+    if not len(ends):
+        return None
     axis = (ends[:, 0].min() + ends[:, 0].max()) / 2
     places = np.concatenate([centres, ends]) - [axis, 0.0]
     here, there = _numbered(places), _numbered(places, mirrored=True)
@@ -117,7 +119,7 @@ def mirror_of(problem: Problem, *pulls: Array) -> Mirror | None:
     friction = problem.friction
     if not (friction == friction[order]).all():
         return None
-    for pull in pulls:
+    for pull in (problem.applied_forces(), *others):
         if np.abs(pull - pull[image[:-1]] * TURNED).max() > ALIKE * np.abs(pull).max(
             initial=0.0
         ):

@@ -1,7 +1,8 @@
-"""Assemblies of compas_assembly and compas_cra as JSON, where they are planar.
+"""Assemblies of compas_assembly, compas_cra and compas_dem as JSON.
 
 Their blocks are meshes in space, z upwards. Planar are those that are prisms along one
-horizontal direction, about one plane: what is read is their section, and their depth.
+horizontal direction, about one plane: what is read is their section, and their depth. Others
+are blocks in space.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from blocksim.blocks.polygons import MOST_BLOCKS
 from blocksim.blocks.shapes import MOST_CORNERS
 from blocksim.common.checks import COORDINATE, require
 from blocksim.common.errors import InputError
+from blocksim.reading.meshes import convex_block, fans
 
 STRAIGHT = 1e-4
 """How far a face may be turned from along or across the plane [rad]: files have 7 digits."""
@@ -54,7 +56,7 @@ def is_compas(data: object) -> bool:
 
 
 def read_compas(data: Table) -> dict[str, Any]:
-    """Read a planar assembly.
+    """Read an assembly: in the plane where it is planar, else in space.
 
     Parameters
     ----------
@@ -69,7 +71,7 @@ def read_compas(data: Table) -> dict[str, Any]:
     Raises
     ------
     InputError
-        In one line, if it is no assembly, or not planar.
+        In one line, if it is no assembly, or a block is open, flat or not convex.
     """
     try:
         meshes = [_mesh(*each) for each in islice(_nodes(data), MOST_BLOCKS + 1)]
@@ -80,6 +82,14 @@ def read_compas(data: Table) -> dict[str, Any]:
         raise InputError("file", f"{type(error).__name__}: {error}", allowed) from None
     require(0 < len(meshes) <= MOST_BLOCKS, "blocks", len(meshes), f"1 to {MOST_BLOCKS}")
     depthwise = _direction(meshes)
+    if depthwise is None:
+        return {
+            "notes": ["assembly of compas in space, m: blocks are hulls of their corners"],
+            "blocks": [
+                convex_block(each.name, each.points, fans(each.faces), fixed=each.fixed)
+                for each in meshes
+            ],
+        }
     # To the right: the direction of the plane that points more to the larger x, or y.
     across = np.cross(depthwise, [0.0, 0.0, 1.0])
     across *= math.copysign(1.0, across[int(np.abs(across).argmax())])
@@ -108,6 +118,13 @@ def _nodes(data: Table) -> Iterator[tuple[str, Table, bool]]:
             yield str(name), _inside(block), bool(places[name].get("is_support", False))
         return
     top = _inside(data)
+    if isinstance(top.get("elements"), dict):  # compas_dem: by guid, each placed where it is
+        for at, each in enumerate(top["elements"].values()):
+            element = _inside(each)
+            moved = element.get("transformation")
+            require(moved is None, f"block {at}", "transformed", "of geometry where it stands")
+            yield str(at), _inside(element["geometry"]), bool(element.get("is_support"))
+        return
     graph = _inside(top.get("graph", top))
     for name, node in graph["node"].items():
         yield str(name), _inside(node["block"]), bool(node.get("is_support", False))
@@ -150,29 +167,24 @@ def _unit(normals: Array) -> Array:
     return normals[kept] / length[kept]
 
 
-def _direction(meshes: Sequence[_Mesh]) -> Array:
+def _direction(meshes: Sequence[_Mesh]) -> Array | None:
     """Find the horizontal direction along which all blocks are prisms about one plane.
 
-    Of several the one that leaves the widest section.
+    Of several the one that leaves the widest section; None where there is none.
     """
     moving = [mesh for mesh in meshes if not mesh.fixed] or list(meshes)
     points = np.concatenate([mesh.points for mesh in moving])
     size = float(np.ptp(points, axis=0).max())
     found: list[tuple[float, float, Array]] = []
-    worst = ""
     for way in _ways(moving[0]):
-        wrong = next(filter(None, (_unlike(mesh, way, size) for mesh in meshes)), None)
         middles = [_levels(mesh, way).mean() for mesh in moving]
-        if wrong is None and max(middles) - min(middles) > LEVEL * size:
-            wrong = "blocks lie behind each other"
-        if wrong is not None:
-            worst = worst or wrong
+        behind = max(middles) - min(middles) > LEVEL * size
+        if behind or not all(_is_prism(mesh, way, size) for mesh in meshes):
             continue
         wide = float(np.ptp(points @ np.cross(way, [0.0, 0.0, 1.0])))
         found.append((wide, abs(float(way[1])), way))
     if not found:
-        allowed = "prisms along one horizontal direction, about one plane"
-        raise InputError("assembly", worst or "no upright face", allowed)
+        return None
     widest = max(wide for wide, *_ in found)
     return max((f for f in found if f[0] > widest - LEVEL * size), key=lambda f: f[1])[2]
 
@@ -195,18 +207,14 @@ def _levels(mesh: _Mesh, way: Array) -> Array:
     return np.array([along.min(), along.max()])
 
 
-def _unlike(mesh: _Mesh, way: Array, size: float) -> str | None:
-    """Say what keeps a block from being a prism along a direction."""
+def _is_prism(mesh: _Mesh, way: Array, size: float) -> bool:
+    """Tell whether all faces are along or across a direction, all corners at its ends."""
     turned = np.abs(_unit(mesh.normals) @ way)
-    if ((turned > STRAIGHT) & (turned < 1 - STRAIGHT)).any():
-        return f"block {mesh.name} has a face that is neither along nor across the plane"
     low, high = _levels(mesh, way)
     along = mesh.points @ way
-    if (np.minimum(along - low, high - along) > LEVEL * size).any():
-        return f"block {mesh.name} has corners between its ends"
-    if not _ends(mesh, way):
-        return f"block {mesh.name} is flat"
-    return None
+    skew = (turned > STRAIGHT) & (turned < 1 - STRAIGHT)
+    between = np.minimum(along - low, high - along) > LEVEL * size
+    return not skew.any() and not between.any() and bool(_ends(mesh, way))
 
 
 def _ends(mesh: _Mesh, way: Array) -> list[NDArray[np.int64]]:

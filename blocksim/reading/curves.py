@@ -54,7 +54,6 @@ def arc(start: complex, end: complex, bulge: float) -> Chords:
 
     Parameters
     ----------
-    start, end : complex
     bulge : float
         Tangent of a quarter of its angle, above 0 where it turns counter-clockwise (as of DXF).
     """
@@ -111,7 +110,6 @@ def ellipse(
 
     Parameters
     ----------
-    start, end : complex
     radii : (float, float)
     turned : float
         Angle of the first radius from x [rad].

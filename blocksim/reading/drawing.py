@@ -9,22 +9,22 @@ no verdict leaves it out. What is on other layers is counted and named.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.outlines import signed_area, step_of
+from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import MOST_BLOCKS
-from blocksim.common.checks import COORDINATE, LENGTH, is_number, require
+from blocksim.common.checks import COORDINATE, require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.words import printable
+from blocksim.reading.asked import UNITS, Reading, Unit
+from blocksim.reading.curves import Corners
 from blocksim.reading.loops import MOST_LINES, loops_of
 
-ROLES = ("blocks", "supports", "ignored")
-"""What a layer may be for; one of the name of a role is for it, if no other is named."""
 LARGEST_DRAWING = 20_000_000
 """Bytes; a larger drawing is not read."""
 MOST_SHAPES = 1_000_000
@@ -33,68 +33,10 @@ FARTHEST = 1e15
 """Coordinate of a drawing, whatever its unit; what is said is the farthest in metres."""
 MOST_KINDS = 8
 """Kinds of what was left out that are named, each with its number and layer."""
-UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "dm": 1e-1, "in": 0.0254, "ft": 0.3048}
-"""In metres."""
 OUTLINE = (
     "a closed outline in the plane, or on another layer "
     "(blocksim convert --picture FILE draws where)"
 )
-
-Corners = list[tuple[float, float]]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Reading:
-    """How a drawing is to be read.
-
-    Parameters
-    ----------
-    unit : float or str, optional
-        Metres that a unit of the drawing is, or one of `UNITS`; by default what it says.
-    layers : mapping of str to sequence of str
-        Names of layers by their role: `blocks`, `supports`, `ignored`. Case does not matter.
-    snap : float, optional
-        Ends of lines that are so near to each other are one corner [m]; by default a
-        ten-thousandth of the shorter line.
-
-    Raises
-    ------
-    InputError
-        If the unit is out of range, a role is unknown, or a layer is named for two.
-    """
-
-    unit: float | str | None = None
-    layers: Mapping[str, Sequence[str]] = field(default_factory=dict[str, Sequence[str]])
-    snap: float | None = None
-
-    def __post_init__(self) -> None:
-        """Check names and range."""
-        if self.unit is not None:
-            allowed = f"{', '.join(UNITS)}, or between 1e-6 and 1e6 m"
-            ok = self.unit in UNITS or is_number(self.unit, 1e-6, 1e6)
-            require(ok, "unit", self.unit, allowed)
-        if self.snap is not None:
-            LENGTH.require("snap", self.snap)
-        roles = self.roles
-        for role, names in self.layers.items():
-            require(role in ROLES, "layer", role, f"for one of {', '.join(ROLES)}")
-            for name in names:
-                once = roles[name.casefold()] == role
-                require(once, "layer", name, "for one of blocks, supports and ignored")
-
-    @property
-    def roles(self) -> dict[str, str]:
-        """Role of each layer that is read, or passed over without a word."""
-        named = {role: self.layers.get(role, (role,)) for role in ROLES}
-        return {name.casefold(): role for role, names in named.items() for name in names}
-
-    def unit_of(self, found: Unit | None) -> Unit | None:
-        """Return the unit that was asked for, or else the one the drawing says."""
-        if self.unit is None:
-            return found
-        metres = UNITS.get(self.unit) if isinstance(self.unit, str) else self.unit
-        said = f"{metres:g} m" if metres == self.unit else str(self.unit)
-        return Unit(metres=metres or 0.0, said=f"a unit of the drawing is {said}, as asked")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,8 +47,6 @@ class Shape:
     ----------
     what : str
         What it is called in its format.
-    layer : str
-    name : str
     corners : list of (x, y)
         In units of the drawing, y upwards; of what is no line, where it is, as far as known.
     closed : bool
@@ -115,9 +55,8 @@ class Shape:
         Why it cannot be read: said where it is on a layer that is read.
     words : bool
         Whether it is text or a dimension, which bears nothing.
-    step : float, optional
-        To which its corners were rounded, in units of the drawing; by default by their
-        decimals.
+    step : float
+        To which its corners were rounded, in units of the drawing.
     stray : float
         How far chords are off the curves they stand for.
     """
@@ -129,7 +68,7 @@ class Shape:
     closed: bool = True
     wrong: str | None = None
     words: bool = False
-    step: float | None = None
+    step: float = 0.0
     stray: float = 0.0
 
     @property
@@ -155,20 +94,11 @@ class Refused:
     why: str
     at: tuple[float, float] | None = None
 
-
-@dataclass(frozen=True, kw_only=True)
-class Unit:
-    """What a unit of the drawing is.
-
-    Parameters
-    ----------
-    metres : float
-    said : str
-        What it was taken for, and why.
-    """
-
-    metres: float
-    said: str
+    @property
+    def said(self) -> str:
+        """What it is called in messages, with the place where it cannot be read."""
+        shape = self.shape
+        return shape.said if self.at is None else replace(shape, corners=[self.at]).said
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,7 +113,6 @@ class Drawing:
         None where the drawing has none, and none was asked for.
     blocks : tuple of (Shape, bool)
         Outlines, and whether they stay where they are.
-    refused : tuple of Refused
     left : str
         What is on other layers, in words.
     moved : float
@@ -208,8 +137,7 @@ class Drawing:
         for each in self.refused[:1]:
             more = len(self.refused) - 1
             others = f"; {more} more of it cannot be read" if more else ""
-            shape = each.shape if each.at is None else replace(each.shape, corners=[each.at])
-            raise InputError(shape.said, each.why, OUTLINE + others)
+            raise InputError(each.said, each.why, OUTLINE + others)
         for role in ("blocks", "supports"):
             found = any(fixed is (role == "supports") for _, fixed in self.blocks)
             # With several blocks, convert can be told which of them are fixed.
@@ -226,15 +154,11 @@ class Drawing:
             raise InputError("unit", MISSING, f"{allowed}; {large}")
         notes = [unit.said, *self._moved(unit)]
         notes += [f"left out of the drawing: {self.left}"] * bool(self.left)
-        steps = [
-            step_of(np.array(shape.corners).ravel()) if shape.step is None else shape.step
-            for shape, _ in self.blocks
-        ]
         return {
             "title": plain(self.path.stem)[:200],
             "source": plain(self.path.name)[:500],
             "notes": notes,
-            "rounding": min(steps) * unit.metres,
+            "rounding": min(shape.step for shape, _ in self.blocks) * unit.metres,
             "blocks": [_block(shape, unit, fixed=fixed) for shape, fixed in self.blocks],
         }
 
@@ -325,16 +249,13 @@ def _closed(
     for loop in loops:
         parts = [drawn[k] for k in loop.lines]
         kinds = " and ".join(sorted({each.what for each in parts}))
-        steps = [step_of(np.array(e.corners).ravel()) if e.step is None else e.step
-                 for e in parts]  # fmt: skip
         found.append(
             replace(
                 parts[0],
                 what=f"outline of {kinds}",
                 corners=loop.corners,
                 closed=True,
-                # Ends that were moved are no decimals of the drawing.
-                step=min(steps),
+                step=min(each.step for each in parts),
                 stray=max(each.stray for each in parts),
             )
         )

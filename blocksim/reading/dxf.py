@@ -17,17 +17,9 @@ from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, require_file
 from blocksim.common.later import require_library
-from blocksim.reading.curves import arc
-from blocksim.reading.drawing import (
-    LARGEST_DRAWING,
-    UNITS,
-    Corners,
-    Drawing,
-    Reading,
-    Shape,
-    Unit,
-    drawing_of,
-)
+from blocksim.reading.asked import UNITS, Reading, Unit
+from blocksim.reading.curves import Corners, arc
+from blocksim.reading.drawing import LARGEST_DRAWING, Drawing, Shape, drawing_of
 
 INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 14: "dm"}
 """Codes of the header's $INSUNITS; 0 is no unit."""
@@ -49,7 +41,6 @@ def read_dxf(path: AnyPath, reading: Reading) -> Drawing:
 
     Parameters
     ----------
-    path : str or path
     reading : Reading
         Its unit is what $INSUNITS says by default.
 
@@ -139,7 +130,10 @@ def _shape(entity: Any, layer: str, name: str) -> Shape:
         over = math.copysign(1.0, entity.dxf.extrusion.z)
         points = list(entity.vertices([entity.dxf.start_angle, entity.dxf.end_angle]))
         return _line(shape, points, [over * math.tan(turn / 4), 0.0], closed=False)
-    if kind in POLYLINES and (kind == "LWPOLYLINE" or _is_line(entity)):
+    # A POLYLINE may be a mesh.
+    if kind == "LWPOLYLINE" or (
+        kind == "POLYLINE" and (entity.is_2d_polyline or entity.is_3d_polyline)
+    ):
         if kind == "POLYLINE" and entity.dxf.flags & SMOOTH:
             return replace(shape, wrong="is a smooth curve")
         return _line(shape, *_points(entity), closed=bool(entity.is_closed))
@@ -180,11 +174,6 @@ def _place(entity: Any) -> Corners:
         if entity.dxf.hasattr(name):
             return _flat([entity.ocs().to_wcs(entity.dxf.get(name))])
     return []
-
-
-def _is_line(entity: Any) -> bool:
-    """Whether a POLYLINE is a line, and no mesh."""
-    return bool(entity.is_2d_polyline or entity.is_3d_polyline)
 
 
 def _points(entity: Any) -> tuple[list[Any], list[float]]:

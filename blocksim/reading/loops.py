@@ -16,11 +16,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.bodies import connected
 from blocksim.blocks.outlines import signed_area
 from blocksim.common.checks import require
+from blocksim.reading.curves import Corners
 
 MEETS = 1e-4
 """Ends of lines are one corner where they are nearer than this share of the shorter line."""
@@ -29,13 +30,11 @@ ALIKE = 1e-3
 MOST_LINES, MOST_ENDS = 10_000, 30
 """Of a drawing, each with an end that meets others; and ends at a place, on average."""
 
-Path = list[tuple[float, float]]
-
 
 class Loop(NamedTuple):
     """A closed outline: its corners, the lines it is made of, and how far ends were moved."""
 
-    corners: Path
+    corners: Corners
     lines: list[int]
     moved: float
 
@@ -58,7 +57,9 @@ class _Edge:
     times: int = 1
 
 
-def loops_of(paths: Sequence[Path], snap: float | None = None) -> tuple[list[Loop], list[Open]]:
+def loops_of(
+    paths: Sequence[Corners], snap: float | None = None
+) -> tuple[list[Loop], list[Open]]:
     """Find the outlines that lines make.
 
     Parameters
@@ -85,7 +86,7 @@ def loops_of(paths: Sequence[Path], snap: float | None = None) -> tuple[list[Loo
     if wrong:
         return [], wrong
     found: list[Loop] = []
-    for group in _groups(edges):
+    for group in _groups(edges, len(places)):
         faces, of = _faces(group)
         inside, at = _inside(group, faces, of)
         if at is not None:
@@ -101,36 +102,30 @@ def loops_of(paths: Sequence[Path], snap: float | None = None) -> tuple[list[Loo
     return found, wrong
 
 
-def _length(path: Path) -> float:
+def _length(path: Corners) -> float:
     points = np.array(path)
     return float(np.hypot(*np.diff(points, axis=0).T).sum())
 
 
 def _corners(points: Array, near: Array) -> tuple[NDArray[np.int64], Array, float]:
     """Take ends that are near each other for one corner: its number for each, and its place."""
-    group = list(range(len(points)))
+    # It takes a third of a second to load, and most files are no drawings.
+    from scipy.spatial import KDTree
 
-    def first(k: int) -> int:
-        while group[k] != k:
-            group[k] = group[group[k]]
-            k = group[k]
-        return k
-
-    moved, tree, reach = 0.0, KDTree(points), float(near.max())
+    tree, reach = KDTree(points), float(near.max())
     many = int(tree.count_neighbors(tree, reach))
     few = many <= MOST_ENDS * len(points)
     require(few, "ends of lines", "more at one place", f"at most {MOST_ENDS} on average")
-    for a, b in tree.query_pairs(reach, output_type="ndarray").tolist():
-        far = math.dist(points[a], points[b])
-        if far <= min(near[a], near[b]):
-            moved = max(moved, far)
-            group[max(first(a), first(b))] = min(first(a), first(b))
-    roots, number = np.unique([first(k) for k in range(len(points))], return_inverse=True)
-    return number, points[roots], moved
+    pairs = tree.query_pairs(reach, output_type="ndarray")
+    far = np.hypot(*(points[pairs[:, 0]] - points[pairs[:, 1]]).T)
+    meet = far <= near[pairs].min(axis=1)
+    number = connected(len(points), *pairs[meet].T)
+    firsts = np.unique(number, return_index=True)[1]
+    return number, points[firsts], float(far[meet].max(initial=0.0))
 
 
 def _edges(
-    paths: Sequence[Path], ends: NDArray[np.int64], places: Array, near: Array
+    paths: Sequence[Corners], ends: NDArray[np.int64], places: Array, near: Array
 ) -> list[_Edge]:
     """Cut lines at the corners that lie on them; those drawn twice are counted."""
     parts: list[_Edge] = []
@@ -152,7 +147,9 @@ def _edges(
     return [part for same in known.values() for part in same]
 
 
-def _cut(line: int, path: Path, ends: Sequence[int], places: Array, near: float) -> list[_Edge]:
+def _cut(
+    line: int, path: Corners, ends: Sequence[int], places: Array, near: float
+) -> list[_Edge]:
     """Cut a line at the corners of others that lie on it."""
     points = np.array(path)
     low, high = points.min(axis=0) - near, points.max(axis=0) + near
@@ -207,28 +204,14 @@ def _unmatched(edges: Sequence[_Edge], places: Array) -> list[Open]:
     ]
 
 
-def _groups(edges: Sequence[_Edge]) -> list[list[_Edge]]:
+def _groups(edges: Sequence[_Edge], corners: int) -> list[list[_Edge]]:
     """Sort edges into those that hang together."""
-    by_corner: dict[int, list[int]] = defaultdict(list)
-    for index, edge in enumerate(edges):
-        for end in edge.ends:
-            by_corner[end].append(index)
-    left, found = set(range(len(edges))), list[list[_Edge]]()
-    for start in range(len(edges)):
-        if start not in left:
-            continue
-        left.remove(start)
-        ahead, group = [start], list[int]()
-        while ahead:
-            index = ahead.pop()
-            group.append(index)
-            for end in edges[index].ends:
-                for other in by_corner[end]:
-                    if other in left:
-                        left.remove(other)
-                        ahead.append(other)
-        found.append([edges[index] for index in sorted(group)])
-    return found
+    ends = np.array([edge.ends for edge in edges], dtype=np.int64).reshape(-1, 2)
+    found: dict[int, list[_Edge]] = defaultdict(list)
+    labels = connected(corners, *ends.T)[ends[:, 0]].tolist()
+    for edge, label in zip(edges, labels, strict=True):
+        found[label].append(edge)
+    return list(found.values())
 
 
 def _directed(edge: _Edge, back: bool) -> tuple[tuple[float, float], ...]:
@@ -288,7 +271,7 @@ def _inside(
     return [k for k, block in full.items() if block], None
 
 
-def _path(group: Sequence[_Edge], face: Sequence[int]) -> Path:
+def _path(group: Sequence[_Edge], face: Sequence[int]) -> Corners:
     return [
         point for half in face for point in _directed(group[half // 2], bool(half % 2))[:-1]
     ]

@@ -22,10 +22,6 @@ def is_scene(data: object) -> bool:
 def read_scene(data: Mapping[str, Any]) -> dict[str, Any]:
     """Return a scene that asks whether blocks stand as a structure file.
 
-    Parameters
-    ----------
-    data : mapping
-
     Raises
     ------
     InputError

@@ -20,17 +20,9 @@ from blocksim.blocks.outlines import step_of
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, read_file
-from blocksim.reading.drawing import (
-    LARGEST_DRAWING,
-    MOST_SHAPES,
-    UNITS,
-    Corners,
-    Drawing,
-    Reading,
-    Shape,
-    Unit,
-    drawing_of,
-)
+from blocksim.reading.asked import UNITS, Reading, Unit
+from blocksim.reading.curves import Corners
+from blocksim.reading.drawing import LARGEST_DRAWING, MOST_SHAPES, Drawing, Shape, drawing_of
 from blocksim.reading.svgtext import (
     NUMBER,
     Line,
@@ -72,7 +64,6 @@ def read_svg(path: AnyPath, reading: Reading) -> Drawing:
 
     Parameters
     ----------
-    path : str or path
     reading : Reading
         Its unit is by default what width and viewBox say in mm, cm or in.
 
@@ -273,7 +264,7 @@ class _Shapes:
             corners=corners + corners[:1] * (line.closed and corners[:1] != corners[-1:]),
             closed=closed,
             wrong=wrong,
-            step=step_of(np.array(line.ends).ravel()) * far if line.ends else None,
+            step=step_of(np.array(line.ends).ravel()) * far,
             stray=line.stray * math.hypot(a, b, c, d),
         )
 

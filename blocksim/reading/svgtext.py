@@ -7,9 +7,8 @@ import re
 from dataclasses import dataclass, field
 
 from blocksim.common.errors import InputError
-from blocksim.reading.curves import LINE, Chords, bezier, ellipse
+from blocksim.reading.curves import LINE, Chords, Corners, bezier, ellipse
 
-Corners = list[tuple[float, float]]
 Matrix = tuple[float, float, float, float, float, float]
 """a, b, c, d, e, f of SVG: x' = a x + c y + e, y' = b x + d y + f."""
 AS_IT_IS: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)

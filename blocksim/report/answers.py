@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from blocksim.blocks.joints import JointState, joint_names, side_name
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import FaceJoint, SpatialAssembly
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.version import __version__
 from blocksim.report.carried import carried_record
 from blocksim.report.problems import measured_line, problem_record, weight_of
+from blocksim.report.schema import ArchBracketRecord, ArchRecord, BracketRecord
 
 if TYPE_CHECKING:
     from blocksim.arch.answers import ArchAnswer
@@ -22,18 +22,15 @@ if TYPE_CHECKING:
     from blocksim.blocks.assembly import Joint
     from blocksim.limit.carried import Carried
     from blocksim.report.schema import (
-        ArchBracketRecord,
-        ArchRecord,
-        BracketRecord,
         CheckRecord,
-        EvidenceRecord,
         JointRecord,
         MovementRecord,
         ShakenRecord,
     )
-    from blocksim.simulation.verdict import Evidence
 
 HINGE = "hinge"
+SHAPE = ("eta", "voussoirs", "weight", "radius", "depth")
+"""What is told of the shape of an arch besides its half-angle."""
 HINGED = {JointState.HINGE_INTRADOS: 0, JointState.HINGE_EXTRADOS: 1}
 """Which end of a joint stays closed, in the order of its `ends`."""
 
@@ -44,7 +41,7 @@ def check_record(answer: Check[Any], carried: Carried | None = None) -> CheckRec
     Forces of joints are in N, as a file has them; normal forces press where they are above
     0. They are those of the safest state of equilibrium. What is not known in space is null.
     """
-    problem: Problem | SpatialProblem = answer.problem
+    problem: Problem[Any] = answer.problem
     carried = carried or answer.carried
     told = carried_record(carried, joint_names(problem.assembly))
     if carried is None:
@@ -56,7 +53,7 @@ def check_record(answer: Check[Any], carried: Carried | None = None) -> CheckRec
         "method": answer.method,
         "verdict": answer.verdict.value,
         "proved": answer.proved,
-        "evidence": evidence_record(answer.evidence),
+        "evidence": [{"test": each.test, "found": each.found} for each in answer.evidence],
         "reason": answer.reason,
         "problem": problem_record(problem),
         "load_factor": answer.load_factor,
@@ -77,38 +74,23 @@ def check_record(answer: Check[Any], carried: Carried | None = None) -> CheckRec
 
 def bracket_record(answer: Bracket[Any]) -> BracketRecord:
     """Return a bracket as `bracket --json` prints it."""
-    return {
+    said = {
         "version": __version__,
-        "method": answer.method,
-        "over": answer.over,
-        "unit": answer.unit,
-        "low": answer.low,
-        "high": answer.high,
-        "stands": answer.stands,  # type: ignore[typeddict-item]
-        "limit": answer.limit,
-        "confirmed": answer.confirmed,
-        "proved": answer.proved,
-        "runs": answer.runs,
-        "undecided": answer.undecided,
-        "tol": answer.tol,
-        "evidence": evidence_record(answer.evidence),
-        "reason": answer.reason,
+        "evidence": [asdict(each) for each in answer.evidence],
         "problem": problem_record(answer.problem, answer.over),
-        "events": answer.events and [asdict(each) for each in answer.events],  # type: ignore[typeddict-item]
-        "intervals": answer.intervals and [asdict(each) for each in answer.intervals],  # type: ignore[typeddict-item]
-        "blocks": answer.blocks,
-        "splits": answer.splits,
-        "wall_s": answer.wall_s,
+        "events": answer.events and [asdict(each) for each in answer.events],
+        "intervals": answer.intervals and [asdict(each) for each in answer.intervals],
         "arch": _arch_bracket(answer),
     }
+    return _record(BracketRecord, answer, said)
 
 
-def evidence_record(evidence: Iterable[Evidence]) -> list[EvidenceRecord]:
-    """Tell what was seen, by which test."""
-    return [{"test": each.test, "found": each.found} for each in evidence]
+def _record(kind: Any, of: object, said: Mapping[str, object]) -> Any:
+    """Return a record: what is said, and the rest as an answer has it under the same names."""
+    return {key: said[key] if key in said else getattr(of, key) for key in kind.__annotations__}
 
 
-def state_words(problem: Problem | SpatialProblem) -> Callable[[JointState], str]:
+def state_words(problem: Problem[Any]) -> Callable[[JointState], str]:
     """Return what says a joint's state: only an arch has an intrados and an extrados."""
     if problem.is_arch:
         return lambda state: state.value
@@ -117,22 +99,12 @@ def state_words(problem: Problem | SpatialProblem) -> Callable[[JointState], str
 
 def _arch(of: ArchAnswer) -> ArchRecord:
     """Tell ratios and modes of an arch."""
-    arch = of.shape
-    return {
-        "half_angle_deg": math.degrees(arch.half_angle),
-        "eta": arch.eta,
-        "voussoirs": arch.voussoirs,
-        "weight": arch.weight,
-        "radius": arch.radius,
-        "depth": arch.depth,
-        "eta_limit": of.eta_limit,
-        "eta_theory": of.eta_theory,
-        "mode": of.mode,
-        "mode_in_motion": of.mode_in_motion,
-        "mode_limit": of.mode_limit,
-        "mode_theory": of.mode_theory,
+    said = {
+        "half_angle_deg": math.degrees(of.shape.half_angle),
+        **{name: getattr(of.shape, name) for name in SHAPE},
         "modes_theory": list(of.modes_theory),
     }
+    return _record(ArchRecord, of, said)
 
 
 def _arch_bracket(answer: Bracket[Any]) -> ArchBracketRecord | None:
@@ -140,30 +112,28 @@ def _arch_bracket(answer: Bracket[Any]) -> ArchBracketRecord | None:
     of, line = answer.arch, measured_line(answer.problem)
     if of is None:
         return None
-    return {
+    said = {
         **_arch(of),
         "eta": None,
         "radius": None if line else of.shape.radius,
         "fixed_line": line.at if line else "centreline",
-        "eta_low": of.eta_low,
-        "eta_high": of.eta_high,
-        "thrust": of.thrust,
         "beta_r_deg": None if of.beta_r is None else math.degrees(of.beta_r),
         "beta_s_deg": None if of.beta_s is None else math.degrees(of.beta_s),
     }
+    return _record(ArchBracketRecord, of, said)
 
 
 def _joints(answer: Check[Any], carried: Carried | None) -> list[JointRecord]:
-    problem: Problem | SpatialProblem = answer.problem
+    problem: Problem[Any] = answer.problem
     assembly, words = problem.assembly, state_words(problem)
     found = None if carried is None else carried.resultants
-    in_space = answer.forces if isinstance(problem, SpatialProblem) else None
+    in_space = answer.forces if problem.in_space else None
     known = problem.weighed and problem.has_size
     told: list[JointRecord] = []
     for k, joint in enumerate(assembly.joints):
         ends = _ends(joint)
         seen = answer.joints[k]
-        end = HINGED.get(seen.state) if isinstance(problem, Problem) else None
+        end = HINGED.get(seen.state) if not problem.in_space else None
         normal = friction = None
         if found is not None:
             normal, friction = float(found.normal[k]), float(found.friction[k])

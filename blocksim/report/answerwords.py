@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from blocksim.arch.dimensions import friction_angle
-from blocksim.ask.check import SOUGHT, UNPROVED
+from blocksim.ask.answer import SOUGHT, UNPROVED
 from blocksim.ask.rest import rest_words
 from blocksim.blocks.joints import JointState, joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.common.words import few
 from blocksim.report.answers import state_words
 from blocksim.report.carried import carried_lines
 from blocksim.report.problems import (
@@ -67,7 +67,7 @@ def check_lines(answer: Check[Any], carried: Carried | None = None) -> list[str]
         lines.append(_exact("least  ", of))
     lines += carried_lines(carried, joint_names(problem.assembly))
     lines += unit_lines(problem) if carried else []
-    slow = len(problem.assembly.joints) > SOUGHT and isinstance(problem, Problem)
+    slow = len(problem.assembly.joints) > SOUGHT and not problem.in_space
     if of is None and carried is None and slow:
         lines.append(f"  safety  not asked: it takes long with more than {SOUGHT} joints")
     if answer.method == "limit":
@@ -79,7 +79,7 @@ def check_lines(answer: Check[Any], carried: Carried | None = None) -> list[str]
     if told := _active(answer):
         lines.append(f"  joints  {told}")
     if of is None and answer.mechanism is not None:
-        movers = few(_movers(answer.mechanism, problem.assembly))
+        movers = few(_movers(answer.mechanism, problem.assembly), SHOWN)
         lines.append(f"  moves   {movers} (the fastest first)")
     return [*lines, *aside_lines(answer.evidence)]
 
@@ -100,7 +100,7 @@ def proof_words(answer: Check[Any]) -> str:
 
 def is_spatial(answer: Check[Any] | Bracket[Any]) -> bool:
     """Tell whether an answer is of blocks in space."""
-    return isinstance(answer.problem, SpatialProblem)
+    return answer.problem.in_space
 
 
 def bracket_lines(answer: Bracket[Any]) -> list[str]:
@@ -312,7 +312,7 @@ def _active(answer: Check[Any]) -> str:
             for _, each in active
         )
     names = joint_names(answer.problem.assembly)
-    return few([f"{names[k]} {words(each.state)}" for k, each in active])
+    return few([f"{names[k]} {words(each.state)}" for k, each in active], SHOWN)
 
 
 def _movers(rates: Array, assembly: Assembly | SpatialAssembly) -> list[str]:
@@ -323,12 +323,6 @@ def _movers(rates: Array, assembly: Assembly | SpatialAssembly) -> list[str]:
     speed = abs(rates[:, :axes]).max(axis=1) + turns * reach
     order = [int(k) for k in (-speed).argsort() if speed[k] > speed.max() / 100]
     return [assembly.blocks[k].name or str(k) for k in order]
-
-
-def few(names: Sequence[str]) -> str:
-    """List names in a line, and say how many more there are."""
-    more = len(names) - SHOWN
-    return ", ".join(names[:SHOWN]) + (f" and {more} more" if more > 0 else "")
 
 
 def _number(value: float) -> str:

@@ -4,54 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from blocksim.common.words import few
 from blocksim.limit import Reaction, in_world
 from blocksim.limit.carried import Carried
-
-if TYPE_CHECKING:
-    from blocksim.report.schema import CarriedRecord
+from blocksim.report.schema import CarriedRecord
 
 KILO, MEGA = 1e3, 1e6
 LARGEST = 1e3
 """Geometrical factor from which on joints need no width to speak of."""
 FAINT = 1e-9
 """Share of the largest reaction below which a part of one is rounding."""
-FIELDS = (
-    "geometrical_factor",
-    "friction_factor",
-    "least_friction",
-    "strength_used",
-    "needed_strength_MPa",
-    "weights_given",
-    "weight_kN",
-    "thrust_joint",
-    "thrust_min_kN",
-    "thrust_max_kN",
-    "thrust_min_kN_per_m",
-    "thrust_max_kN_per_m",
-    "thrust_min_per_weight",
-    "thrust_max_per_weight",
-    "reactions",
-    "worst_joints",
-)
 SHOWN = 4
 """Supports and joints told in a line of text."""
 
 
 def carried_record(carried: Carried | None, names: Sequence[str]) -> CarriedRecord:
-    """Return what a structure carries, every field null where it is not known.
-
-    Parameters
-    ----------
-    carried : Carried or None
-    names : sequence of str
-        Of the joints.
-    """
+    """Return what a structure carries, with names of joints; null where unknown."""
     if carried is None:
-        return dict.fromkeys(FIELDS)  # type: ignore[return-value]
+        return dict.fromkeys(CarriedRecord.__annotations__)  # type: ignore[return-value]
     low, high = carried.thrust or (None, None)
     depth, weight = carried.depth, carried.weight
     used = carried.resultants
@@ -104,10 +77,12 @@ def carried_lines(carried: Carried | None, names: Sequence[str]) -> list[str]:
     if carried.joint is not None and carried.thrust is not None:
         low, high = (_force(each, carried) for each in carried.thrust)
         said = f"{low} in every state" if low == high else f"{low} to {high}"
+        if math.isinf(carried.thrust[1]):
+            said = f"{low} or more, without limit"
         lines.append(f"  thrust  {said}, across joint {names[carried.joint]}")
     if carried.reactions:
         told = [f"{each.name}: {_borne(each, carried)}" for each in carried.reactions]
-        lines.append(f"  bears   {_few(told, '; ')}, in the safest state")
+        lines.append(f"  bears   {few(told, SHOWN, '; ')}, in the safest state")
     lines += _worst(carried, names)
     if not carried.problem.weighed:
         lines.append("  unit    W is the weight of all blocks: no unit weight was given")
@@ -149,7 +124,7 @@ def _worst(carried: Carried, names: Sequence[str]) -> list[str]:
         return []
     first = worst[0]
     what = "width" if used.width_used[first] >= used.friction_used[first] else "friction"
-    listed = _few([names[k] for k in worst], ", ")
+    listed = few([names[k] for k in worst], SHOWN)
     joints = "joint" if len(worst) == 1 else "joints"
     share = f"{used.used[first]:.1%} of the {what} is used"
     return [f"  worst   {joints} {listed}: {share}, in the safest state"]
@@ -167,11 +142,6 @@ def _force(newton: float, carried: Carried) -> str:
 
 def _over(force: float | None, unit: float | None) -> float | None:
     return None if force is None or unit is None else force / unit
-
-
-def _few(told: Sequence[str], between: str) -> str:
-    more = len(told) - SHOWN
-    return between.join(told[:SHOWN]) + (f" and {more} more" if more > 0 else "")
 
 
 def _number(value: float) -> str:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from blocksim.common.errors import InputError
-from blocksim.common.files import AnyPath, json_of, make_folder, read_file, write_whole
+from blocksim.common.files import AnyPath, json_of, read_file, write_folder
+from blocksim.common.tables import as_said
 from blocksim.common.words import printable
 from blocksim.engines import ENGINES
-from blocksim.report.tables import as_json, machine, pictures, write_contents
+from blocksim.report.tables import as_json, machine, pictures
 from blocksim.studies.chart import Point, on_front
 from blocksim.studies.refinement import REFINEMENTS
 from blocksim.view.chartfigure import chart_figures
@@ -22,32 +23,20 @@ LARGEST_FILE = 1 << 24
 
 
 def write_chart(points: Sequence[Point], folder: AnyPath) -> list[Path]:
-    """Write chart.json and the pictures of `chart_figures`, .png and .svg, into a folder.
-
-    Raises
-    ------
-    InputError, MachineError
-        If they cannot be written.
-    """
-    folder = Path(folder)
-    make_folder(folder)
-    made = [folder / "chart.json"]
-    write_points(points, made[0])
+    """Write chart.json and the pictures of `chart_figures`, .png and .svg, into a folder."""
+    contents = {"chart.json": _document(points)}
     for name, figure in chart_figures(points).items():
-        made += write_contents(folder, pictures(name, figure))
-    return made
+        contents |= pictures(name, figure)
+    return write_folder(folder, contents)
 
 
 def write_points(points: Sequence[Point], path: AnyPath) -> None:
-    """Write points as JSON, as `read_points` takes them.
-
-    Raises
-    ------
-    InputError, MachineError
-        If they cannot be written.
-    """
+    """Write points as JSON, as `read_points` takes them."""
     path = Path(path)
-    make_folder(path.parent)
+    write_folder(path.parent, {path.name: _document(points)})
+
+
+def _document(points: Sequence[Point]) -> bytes:
     by_time, by_work = on_front(points), on_front(points, "work")
     records = [
         {
@@ -70,7 +59,7 @@ def write_points(points: Sequence[Point], path: AnyPath) -> None:
         "knobs": knobs,
         "points": records,
     }
-    write_whole(path, lambda file: file.write(as_json(document)))
+    return as_json(document)
 
 
 def read_points(path: AnyPath) -> list[Point]:
@@ -87,37 +76,17 @@ def read_points(path: AnyPath) -> list[Point]:
     text = read_file(path, "points", WRITTEN, LARGEST_FILE)
     try:
         return [_point(record) for record in json_of(text)["points"]]
-    except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError, InputError):
         raise InputError("points", str(path), WRITTEN) from None
 
 
 def _point(record: dict[str, Any]) -> Point:
-    """Return a record as a point; `KeyError`, `TypeError` or `ValueError` if it is none."""
+    """Return a record as a point; `KeyError`, `TypeError` or `InputError` if it is none."""
     if "tol" in record:
         seconds = record["seconds"]
         now = {"knob": "tolerance", "value": record["tol"]}
         record = {**record, **now, "processor_s": seconds, "wall_s": seconds}
-    if record["knob"] not in REFINEMENTS:
-        raise KeyError(record["knob"])
-    processor_s, wall_s = (
-        tuple(float(each) for each in record[key]) for key in ("processor_s", "wall_s")
-    )
-    if not processor_s:
-        raise ValueError(processor_s)
-    return Point(
-        case=printable(str(record["case"])),
-        method=printable(str(record["method"])),
-        knob=str(record["knob"]),
-        value=float(record["value"]),
-        error=float(record["error"]),
-        low=_end(record.get("low")),
-        high=_end(record.get("high")),
-        undecided=int(record["undecided"]),
-        work=float(record["work"]),
-        processor_s=processor_s,
-        wall_s=wall_s,
-    )
-
-
-def _end(value: Any) -> float | None:
-    return None if value is None else float(value)
+    found = as_said(Point, record)
+    if found.knob not in REFINEMENTS or not found.processor_s:
+        raise KeyError(found.knob)
+    return replace(found, case=printable(found.case), method=printable(found.method))

@@ -12,7 +12,8 @@ from blocksim.limit.margins import crown
 from blocksim.report.problems import described, problem_record, size_lines
 
 if TYPE_CHECKING:
-    from blocksim.ask.crossing import Crossing, Place
+    from blocksim.ask.crossing import Crossing
+    from blocksim.ask.worst import Place
     from blocksim.report.schema import CrossingRecord, PlaceRecord
 
 
@@ -35,23 +36,18 @@ def crossing_lines(answer: Crossing) -> list[str]:
     if vehicle.source:
         lines.append(f"  source  {vehicle.source}")
     found = [
-        (ends, place)
-        for ends, place in zip(answer.thrusts, answer.places, strict=True)
-        if ends is not None
+        (*ends, at) for ends, at in zip(answer.thrusts, answer.places, strict=True) if ends
     ]
     joint = crown(problem)
     if found and joint is not None:
-        least, most = min(found, key=_low), max(found, key=lambda each: each[0][1])
+        least = min(found, key=lambda each: each[0])
+        most = max(found, key=lambda each: each[1])
         where = joint_names(problem.assembly)[joint]
         lines.append(
-            f"  thrust  at {where}, of all places asked: least {least[0][0] / 1e3:.6g} kN "
-            f"({_at(least[1])}), greatest {most[0][1] / 1e3:.6g} kN ({_at(most[1])})"
+            f"  thrust  at {where}, of all places asked: least {least[0] / 1e3:.6g} kN "
+            f"({_at(least[2])}), greatest {most[1] / 1e3:.6g} kN ({_at(most[2])})"
         )
     return lines
-
-
-def _low(found: tuple[tuple[float, float], Place]) -> float:
-    return found[0][0]
 
 
 def _at(place: Place) -> str:
@@ -101,18 +97,8 @@ def write_places(answer: Crossing, file: BinaryIO) -> None:
     """Write load factor and thrust at every place as CSV."""
     axles = [f"axle_{index + 1}_m" for index in range(len(answer.vehicle.axles))]
     names = ["heading", "position_m", *axles, "load_factor", "thrust_min_kN", "thrust_max_kN"]
-    write_sheet(
-        file,
-        names,
-        (
-            [
-                record["heading"],
-                record["position_m"],
-                *record["axles_m"],
-                record["load_factor"],
-                record["thrust_min_kN"],
-                record["thrust_max_kN"],
-            ]
-            for record in _records(answer)
-        ),
+    rows = (
+        [told["heading"], told["position_m"], *told["axles_m"], *list(told.values())[3:]]
+        for told in _records(answer)
     )
+    write_sheet(file, names, rows)

@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
-
-from blocksim.common.words import printed
 from blocksim.report.answerwords import ratio
 from blocksim.view import style
+from blocksim.view.templates import environment_of
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 JOINT = 3.0
 """Width of a joint that takes part [pixels]."""
 
 
 def environment() -> Environment:
-    """Return templates of this room, which know colours and escape what they are given."""
-    made = Environment(
-        loader=PackageLoader("blocksim.report"),
-        autoescape=select_autoescape(),
-        undefined=StrictUndefined,
-        finalize=printed,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    """Return templates of this room, which know colours."""
+    made = environment_of("blocksim.report", "templates", lstrip=True)
     made.filters["ratio"] = ratio
     colours = {
         "joint_colours": style.JOINTS,

@@ -15,30 +15,16 @@ STYLE = re.compile(r'style="[^"]*"')
 COLOUR = re.compile(r"#([0-9a-f]{6})\b")
 FILL = re.compile(r'(<rect [^>]*)fill="#([0-9a-f]{6})"')
 """Of hatching, the one colour that is no style."""
+OWN = re.compile(r'( id="|href="#|url\(#)')
+"""Before the name of an element of the picture."""
 LINK = re.compile(rf'<a xlink:href="(?:{re.escape(PAGE)})?#row-(\d+)"(?: target="_blank")?')
 DARKEST, LIGHTEST = 0.12, 0.93
 """Lightness of what is white and black by day, in the dark."""
 
 
 def inline_map(svg: bytes, names: Mapping[int, str]) -> tuple[str, dict[str, str]]:
-    """Turn a map drawn for paper into a part of the page.
-
-    Parameters
-    ----------
-    svg : bytes
-        A file of SVG with its colours as #rrggbb in `style` attributes. Its links lead to
-        rows of the table, `row-1` and so on.
-    names : mapping of int to str
-        Of the rows.
-
-    Returns
-    -------
-    text : str
-        An element, with each colour #rrggbb as the variable --map-rrggbb.
-    dark : dict of str to str
-        Each colour rrggbb, and what it is in the dark.
-    """
-    text, dark = inline_picture(svg, "map", "group")
+    """Turn a map into a part of the page, as `inline_picture`; its links name rows."""
+    text, dark = inline_picture(svg, "map", "group", "map")
     reached: set[str] = set()
 
     def link(match: re.Match[str]) -> str:
@@ -53,7 +39,7 @@ def inline_map(svg: bytes, names: Mapping[int, str]) -> tuple[str, dict[str, str
     return LINK.sub(link, text), dark
 
 
-def inline_picture(svg: bytes, name: str, role: str) -> tuple[str, dict[str, str]]:
+def inline_picture(svg: bytes, name: str, role: str, anchor: str) -> tuple[str, dict[str, str]]:
     """Turn a picture drawn for paper into a part of the page.
 
     Parameters
@@ -61,8 +47,10 @@ def inline_picture(svg: bytes, name: str, role: str) -> tuple[str, dict[str, str
     svg : bytes
         A file of SVG with its colours as #rrggbb in `style` attributes.
     name : str
-        Class of the element; what has the id `name-words` describes it.
-    role : str
+        Class of the element.
+    role, anchor : str
+        What has the id `anchor-words` describes it. Ids within it begin with the anchor, where
+        that is another than the name: no two on a page are the same.
 
     Returns
     -------
@@ -75,9 +63,11 @@ def inline_picture(svg: bytes, name: str, role: str) -> tuple[str, dict[str, str
     text = NOT_OURS.sub("", text[text.index("<svg") :])
     opening = OPENING.match(text)
     box = BOX.search(opening[0]) if opening else None
-    said = f'role="{role}" aria-labelledby="{name}-words"'
+    said = f'role="{role}" aria-labelledby="{anchor}-words"'
     head = f'<svg class="{name}" {box[0] if box else ""} {said}>'
     text = OPENING.sub(head, text, count=1)
+    if anchor != name:
+        text = OWN.sub(rf"\1{anchor}-", text)
     text = FILL.sub(r'\1style="fill: #\2"', text)
     found = {colour for style in STYLE.findall(text) for colour in COLOUR.findall(style)}
     text = STYLE.sub(lambda style: COLOUR.sub(rf"var(--{name}-\1)", style[0]), text)

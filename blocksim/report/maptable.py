@@ -11,13 +11,13 @@ from blocksim.arch.maptable import (
     NAMES,
     RATES,
     SPECIAL,
-    TablePoint,
     landmark_points,
     line_points,
     rates_of,
     special_points,
 )
 from blocksim.arch.modes import Mode
+from blocksim.arch.theory import Landmark
 from blocksim.common.sheets import sheet_of
 from blocksim.common.version import __version__
 
@@ -39,12 +39,12 @@ def map_record(weight: Weight) -> dict[str, object]:
     }
 
 
-def _record(point: TablePoint, weight: Weight) -> dict[str, object]:
+def _record(point: Landmark, weight: Weight) -> dict[str, object]:
     rates = {str(mode): rates_of(point, mode, weight) for mode in point.modes}
     return {**_numbers(point), "modes": list(point.modes), "rates": rates}
 
 
-def _numbers(point: TablePoint) -> dict[str, object]:
+def _numbers(point: Landmark) -> dict[str, object]:
     beta_s = None if point.beta_s is None else math.degrees(point.beta_s)
     return {
         "name": point.name,
@@ -73,7 +73,7 @@ def map_sheet(weight: Weight) -> bytes:
     return sheet_of(list(rows[0]), (list(row.values()) for row in rows))
 
 
-def _points(weight: Weight) -> Iterator[TablePoint]:
+def _points(weight: Weight) -> Iterator[Landmark]:
     yield from landmark_points(weight)
     yield from special_points(weight)
     for name in LINES:
@@ -109,7 +109,7 @@ def map_lines(weight: Weight) -> list[str]:
     return lines
 
 
-def _rates(point: TablePoint, mode: Mode, weight: Weight) -> list[str]:
+def _rates(point: Landmark, mode: Mode, weight: Weight) -> list[str]:
     values = rates_of(point, mode, weight)
     return [f"{value:.8f}" if (value := values[f"{a}_{b}"]) else "-" for a, b in RATES]
 

@@ -10,14 +10,15 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState, ObservedJoint, classify
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.road import fill_loads
 from blocksim.simulation.recording import Recording
-from blocksim.studies.questions import Drawn
 from blocksim.view.arrows import FEW, forces_of
 from blocksim.view.drawing import HINGES, carried, state_of_any
 from blocksim.view.stage import Stage
@@ -39,18 +40,10 @@ LONG, HEAD, GAP = 0.32, 0.1, 0.12
 """Length of an arrow and of its head, and its distance from the blocks [size]."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Mark:
-    """A joint that takes part, drawn on one of its blocks or on a support.
+class Mark(NamedTuple):
+    """A joint that takes part, on one of its blocks or on a support.
 
-    Parameters
-    ----------
-    state : str
-        As a class of the page's style.
-    line : str
-        Its two ends, as the points of a polyline.
-    hinge : (float, float) or None
-        Where it turns, drawn once for each joint.
+    Its state is a class of the page's style; a hinge, where it turns, is drawn with one block.
     """
 
     state: str
@@ -58,8 +51,7 @@ class Mark:
     hinge: tuple[float, float] | None
 
 
-@dataclass(frozen=True, kw_only=True)
-class Piece:
+class Piece(NamedTuple):
     """A block: its outlines at rest, the centre it turns about, its marks."""
 
     outlines: tuple[str, ...]
@@ -68,8 +60,7 @@ class Piece:
     moved: str
 
 
-@dataclass(frozen=True, kw_only=True)
-class Arrow:
+class Arrow(NamedTuple):
     """A force: what it is (a class of the page's style), its shaft and its head."""
 
     what: str
@@ -87,8 +78,6 @@ class Drawing:
         The drawing's viewBox.
     rest : tuple of str
         Outlines at rest, of what moves.
-    pieces : tuple of Piece
-    footings : tuple of str
     supports : tuple of Mark
         Active joints' faces that stay.
     thrust : tuple of str
@@ -132,19 +121,21 @@ def recorded_drawing(recording: Recording) -> Drawing:
     return _drawing(recording.problem, states, moved, enlarged, Stage(recording).thrust)
 
 
-def mechanism_drawing(drawn: Drawn) -> Drawing:
-    """Draw a structure, moved along its mechanism where it has one."""
-    blocks = drawn.problem.assembly.blocks
+def mechanism_drawing(
+    problem: Problem, rates: Array | None, states: Sequence[JointState]
+) -> Drawing:
+    """Draw a structure of the plane, moved along its mechanism where it has one."""
+    blocks, size = problem.assembly.blocks, problem.assembly.size
     still = np.zeros((1, len(blocks), PLANAR))
-    if drawn.rates is None:
-        return _drawing(drawn.problem, drawn.states, still, None)
-    rates, size = drawn.rates[:, :PLANAR], drawn.problem.assembly.size
+    if rates is None:
+        return _drawing(problem, states, still, None)
+    rates = rates[:, :PLANAR]
     scale = SHOWN / max(
         float(np.hypot(*carried(block.vertices / size, block.centre / size, rate).T).max())
         for block, rate in zip(blocks, rates, strict=True)
     )
     moved = np.concatenate([still, rates[None]])
-    return _drawing(drawn.problem, drawn.states, moved, scale)
+    return _drawing(problem, states, moved, scale)
 
 
 def joints_of(recording: Recording) -> tuple[ObservedJoint, ...]:
@@ -182,12 +173,7 @@ def _drawing(
         box=f"{low[0] * UNIT:.1f} {-high[1] * UNIT:.1f} {wide:.1f} {tall:.1f}",
         rest=tuple(_points(part) for each in outlines for part in each) if enlarged else (),
         pieces=tuple(
-            Piece(
-                outlines=tuple(map(_points, outline)),
-                centre=centre,
-                marks=marks[index],
-                moved=_transform(pose, centre),
-            )
+            Piece(tuple(map(_points, outline)), centre, marks[index], _transform(pose, centre))
             for index, (outline, centre, pose) in enumerate(
                 zip(outlines, centres, frames[-1], strict=True)
             )
@@ -220,18 +206,15 @@ def _marks(
         owner = max(int(before[joint]), int(after[joint]))
         for block in (int(before[joint]), int(after[joint])):
             dot = hinge if block == owner else None
-            found[block].append(Mark(state=look, line=_points(ends[joint]), hinge=dot))
+            found[block].append(Mark(look, _points(ends[joint]), dot))
     return {block: tuple(marks) for block, marks in found.items()}
 
 
 def _lines(problem: Problem, low: Array, high: Array) -> list[tuple[str, Array]]:
-    """Return what acts besides gravity, by the blocks it acts on, from tail to tip [size].
-
-    A force on every block, and gravity that does not pull straight down, are one arrow
-    beside the structure.
-    """
+    """Return what acts besides gravity (fill is not shown), from tail to tip [size]."""
     size, found = problem.assembly.size, list[tuple[str, Array]]()
-    many = sum(len(load.blocks) for load in (*problem.dead, *problem.live)) > FEW
+    dead = problem.dead[fill_loads(problem) :]
+    many = sum(len(load.blocks) for load in (*dead, *problem.live)) > FEW
     long = LONG / 2 if many else LONG
 
     def beside(what: str, force: Array) -> tuple[str, Array]:
@@ -241,7 +224,7 @@ def _lines(problem: Problem, low: Array, high: Array) -> list[tuple[str, Array]]
         tip = np.array([side, (low[1] + high[1]) / 2 + max(0.0, -float(way[1])) / 2])
         return what, np.array([tip - way, tip])
 
-    for what, loads in (("dead", problem.dead), ("live", problem.live)):
+    for what, loads in (("dead", dead), ("live", problem.live)):
         for load in loads:
             if load.per_weight or len(load.blocks) > 1:
                 found.append(beside(what, load.force))
@@ -278,7 +261,7 @@ def _arrow(what: str, line: Array) -> Arrow:
     across = np.array([-along[1], along[0]])
     back = tip - size * along
     head = np.array([tip, back + 0.4 * size * across, back - 0.4 * size * across])
-    return Arrow(what=what, shaft=_points(np.array([tail, back])), head=_points(head))
+    return Arrow(what, _points(np.array([tail, back])), _points(head))
 
 
 def _place(point: Array) -> tuple[float, float]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from statistics import fmean
+from typing import Any
 
 from blocksim.arch.circular import GRAVITY
 from blocksim.arch.modes import Mode
@@ -16,9 +16,9 @@ from blocksim.engines import engine_named
 from blocksim.report.answerwords import ratio
 from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_map
-from blocksim.report.motion import Drawing, joints_of, recorded_drawing
+from blocksim.report.motion import joints_of, recorded_drawing
 from blocksim.report.structurepart import shown_structures
-from blocksim.report.structurewords import summary_of_structures
+from blocksim.report.structurewords import error_of, found_of, summary_of_structures
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
@@ -35,35 +35,6 @@ STATES = {
 }
 
 
-@dataclass(frozen=True, kw_only=True)
-class Result:
-    """A row as the page shows it; `thickest` where nothing thinner than eta = 2 was tried."""
-
-    row: Validation
-    anchor: str
-    thickest: bool
-    found: str
-    bracket: str
-    error: str
-    drawing: Drawing | None
-    caption: str
-    words: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Shown:
-    """A scenario and what every engine showed of it."""
-
-    number: int
-    anchor: str
-    results: tuple[Result, ...]
-
-    @property
-    def row(self) -> Validation:
-        """What all engines were given."""
-        return self.results[0].row
-
-
 def report_page(
     rows: Sequence[Validation],
     map_svg: bytes,
@@ -72,38 +43,18 @@ def report_page(
     structures: Sequence[StructureRow] = (),
     structures_unasked: Sequence[Unasked] = (),
 ) -> str:
-    """Write the page.
-
-    Parameters
-    ----------
-    rows : sequence of Validation
-        Of one engine or several.
-    map_svg : bytes
-        The map with the results.
-    machine : mapping
-        What the figures were measured on.
-    unasked : sequence of Unasked
-    structures : sequence of StructureRow
-        Of the second part; left out of the page where there are none.
-    structures_unasked : sequence of Unasked
-
-    Returns
-    -------
-    str
-        HTML that loads nothing.
-    """
+    """Write the page, of one engine or several: HTML that loads nothing."""
     pages = environment()
-    pages.filters |= {
-        "degrees": _degrees,
-        "friction": _friction,
-        "capitalised": _capitalised,
-    }
+    pages.filters |= {"degrees": _degrees, "friction": _friction, "capitalised": _capitalised}
+    pages.filters |= {"found": found_of, "error": error_of}
     template = pages.get_template("report.html")
     engines = list(dict.fromkeys(row.engine for row in rows))
     drawn_map, dark = inline_map(map_svg, {n: name for name, n in numbered(rows).items()})
-    shown = shown_structures(structures)
     return template.render(
-        cases=_cases(rows),
+        cases=[
+            _case(number, [row for row in rows if row.scenario == name])
+            for name, number in numbered(rows).items()
+        ],
         unasked=unasked,
         misses=[row for row in rows if row.miss],
         notes=[row for row in rows if row.note and not row.miss],
@@ -116,23 +67,33 @@ def report_page(
         machine=machine,
         made=made_at(),
         seconds=sum(row.wall_s for row in rows),
-        tol=" and ".join(
-            f"{_percent(engine_named(engine).validated_to)} ({engine})" for engine in engines
-        ),
+        tol=" and ".join(map(_width_of, engines)),
         aside=_percent(ASIDE),
         bound=_percent(ERROR_BOUND),
         states=STATES,
-        structures=shown,
-        structure_sentence=summary_of_structures(structures),
         structure_misses=[row for row in structures if row.miss],
-        structure_anchors={each.row.structure: each.anchor for each in shown},
         structure_unasked=structures_unasked,
-        structure_near=f"{NEAR:g}",
-        structure_asides=_asides(structures),
-        structure_slowly=_percent(SLOWLY),
+        **_structures(structures),
         mode_styles=style.MODES,
         modes=list(Mode),
     )
+
+
+def _width_of(engine: str) -> str:
+    return f"{_percent(engine_named(engine).validated_to)} ({engine})"
+
+
+def _structures(rows: Sequence[StructureRow]) -> dict[str, object]:
+    """Return what the second part of the page says."""
+    shown = shown_structures(rows)
+    return {
+        "structures": shown,
+        "structure_sentence": summary_of_structures(rows),
+        "structure_anchors": {each["row"].structure: each["anchor"] for each in shown},
+        "structure_near": f"{NEAR:g}",
+        "structure_asides": _asides(rows),
+        "structure_slowly": _percent(SLOWLY),
+    }
 
 
 def summary(rows: Sequence[Validation]) -> str:
@@ -163,21 +124,15 @@ def _asides(rows: Sequence[StructureRow]) -> str:
     )
 
 
-def _cases(rows: Sequence[Validation]) -> list[Shown]:
-    return [
-        Shown(
-            number=number,
-            anchor=f"case-{number}",
-            results=tuple(
-                _result(row, f"case-{number}-{place}")
-                for place, row in enumerate(r for r in rows if r.scenario == name)
-            ),
-        )
-        for name, number in numbered(rows).items()
-    ]
+def _case(number: int, rows: Sequence[Validation]) -> dict[str, Any]:
+    """Return a scenario as the page shows it, with what every engine showed of it."""
+    anchor = f"case-{number}"
+    results = [_result(row, f"{anchor}-{place}") for place, row in enumerate(rows)]
+    return {"number": number, "anchor": anchor, "row": rows[0], "results": results}
 
 
-def _result(row: Validation, anchor: str) -> Result:
+def _result(row: Validation, anchor: str) -> dict[str, Any]:
+    """Return a row as the page shows it."""
     low, high = row.eta_low, row.eta_high
     if row.verdict is not None:
         bracket = "-"
@@ -189,24 +144,24 @@ def _result(row: Validation, anchor: str) -> Result:
         bracket = f"{low:.6g} to {high:.6g}"
     ends = [eta for eta in (low, high) if eta is not None]
     nothing = not ends or (high is None and row.eta_limit is None)
-    # Nothing stands: there is no least thickness to be aside of.
+    # Nothing thinner than eta = 2 stands: there is no least thickness to be aside of.
     thickest = low is not None and high is None
-    caption, words = ("", "") if row.recording is None else _told(row.recording, thickest)
-    return Result(
-        row=row,
-        anchor=anchor,
-        thickest=thickest,
-        found=bracket if row.verdict else "none" if nothing else ratio(fmean(ends)),
-        bracket=bracket,
-        error="-" if row.error is None else _percent(row.error, "+.3f"),
-        drawing=None if row.recording is None else recorded_drawing(row.recording),
-        caption=caption,
-        words=words,
-    )
+    shown: dict[str, Any] = {"drawing": None}
+    if row.recording is not None:
+        shown = _shown(row.recording, thickest=thickest)
+    return {
+        "row": row,
+        "anchor": anchor,
+        "thickest": thickest,
+        "found": bracket if row.verdict else "none" if nothing else ratio(fmean(ends)),
+        "bracket": bracket,
+        "error": "-" if row.error is None else _percent(row.error, "+.3f"),
+        **shown,
+    }
 
 
-def _told(recording: Recording, thickest: bool) -> tuple[str, str]:
-    """Say what is drawn: a caption, and words for those who do not see it."""
+def _shown(recording: Recording, *, thickest: bool) -> dict[str, Any]:
+    """Draw a recording, with a caption, and words for those who do not see it."""
     drawn, seconds = recorded_drawing(recording), float(recording.seconds(GRAVITY)[-1])
     where = "the thickest arch there is" if thickest else (
         f"{_percent(ASIDE)} below the bracket's centre"
@@ -222,7 +177,8 @@ def _told(recording: Recording, thickest: bool) -> tuple[str, str]:
     ]
     words = f"Joints that take part, from the left springing to the right: {', '.join(active)}."
     caption = f"{known}{where}; {moved} (r = {recording.assembly.size:g} m)"
-    return caption, words if active else "Nothing moves."
+    words = words if active else "Nothing moves."
+    return {"drawing": drawn, "caption": caption, "words": words}
 
 
 def _percent(share: float, digits: str = "g") -> str:

@@ -29,11 +29,9 @@ def write_paper(
 
     Parameters
     ----------
-    folder : str or path
     figures : sequence of int, optional
         Their numbers; all 25 if left out.
     kind : {"svg", "png"}
-    progress : callable
 
     Returns
     -------

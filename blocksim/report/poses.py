@@ -11,6 +11,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY
+from blocksim.blocks.space.assembly import FaceJoint, SolidBlock
 from blocksim.common.files import json_text
 from blocksim.common.sheets import write_sheet
 from blocksim.common.version import __version__
@@ -20,42 +21,40 @@ VERSION = 1
 """Of the JSON's fields: grows when one changes its meaning or goes."""
 COLUMNS = ("x_m", "y_m", "rotation_rad", "z_m", "rotation_x_rad", "rotation_y_rad")
 """What the columns of poses are; planar recordings have the first three."""
+IN_SPACE = ("x_m", "y_m", "z_m", "rotation_x_rad", "rotation_y_rad", "rotation_z_rad")
+"""The same of blocks in space."""
 
 
-def write_recording_csv(recording: Recording, file: BinaryIO) -> None:
+def write_recording_csv(recording: Recording[Any], file: BinaryIO) -> None:
     """Write a row for each block at each time, for `pandas.read_csv`.
 
     Columns are `time_s`, `block` (its name, else its number), where its centre of weight is
     (`x_m`, `y_m`) and `rotation_rad`, counter-clockwise; from engines in three dimensions also
     `z_m`, `rotation_x_rad` and `rotation_y_rad`: with `rotation_rad`, about z, a rotation
-    vector.
+    vector. In space that is called `rotation_z_rad`.
     """
-    poses = _poses(recording)
-    names = _names(recording)
+    poses, names = _poses(recording), _names(recording)
     values = np.stack(list(poses.values()), axis=-1)
+    seconds = recording.seconds(STANDARD_GRAVITY).tolist()
     rows = (
         [time, name, *row]
-        for time, frame in zip(_seconds(recording), values, strict=True)
+        for time, frame in zip(seconds, values, strict=True)
         for name, row in zip(names, frame.tolist(), strict=True)
     )
     write_sheet(file, ["time_s", "block", *poses], rows)
 
 
-def write_recording_json(recording: Recording, file: BinaryIO) -> None:
+def write_recording_json(recording: Recording[Any], file: BinaryIO) -> None:
     """Write what `recording_document` says."""
     file.write(json_text(recording_document(recording)).encode())
 
 
-def recording_document(recording: Recording) -> dict[str, Any]:
-    """Return geometry and poses as plain data, the unit in the name of each field.
-
-    Poses are one list a frame of one number a block, in the order of `blocks`; their columns
-    are those of the CSV.
-    """
+def recording_document(recording: Recording[Any]) -> dict[str, Any]:
+    """Return geometry and poses, a list a frame of a number a block, units in the names."""
     assembly, problem = recording.assembly, recording.problem
     names = _names(recording)
     supports = [
-        {"name": each.name or f"support {at}", "polygons_m": _lists(each.polygons)}
+        {"name": each.name or f"support {at}", **_shape(each)}
         for at, each in enumerate(assembly.supports)
     ]
     return {
@@ -68,48 +67,72 @@ def recording_document(recording: Recording) -> dict[str, Any]:
         "state_hash": recording.state_hash,
         "friction": problem.mu,
         "gravity_g": problem.gravity.tolist(),
+        "gravity_m_s2": (problem.gravity * STANDARD_GRAVITY).tolist(),
         "supports": supports,
         "blocks": [
             {
                 "name": name,
                 "centre_m": block.centre.tolist(),
-                "polygons_m": _lists(block.polygons),
-                "depth_m": block.depth,
-                "weight_N": block.mass * STANDARD_GRAVITY,
+                **_shape(block),
+                **({} if problem.in_space else {"depth_m": block.depth}),
+                "weight_N": weight,
             }
-            for name, block in zip(names, assembly.blocks, strict=True)
+            for name, block, weight in zip(
+                names, assembly.blocks, _weights(recording), strict=True
+            )
         ],
         "joints": [
             {
                 "a": _side(joint, joint.before, names, supports),
                 "b": _side(joint, joint.after, names, supports),
-                "ends_m": _lists((joint.inner, joint.outer)),
+                **_ends(joint),
             }
             for joint in assembly.joints
         ],
-        "time_s": _seconds(recording),
+        "time_s": recording.seconds(STANDARD_GRAVITY).tolist(),
         **{name: column.tolist() for name, column in _poses(recording).items()},
     }
 
 
-def _names(recording: Recording) -> list[str]:
+def _names(recording: Recording[Any]) -> list[str]:
     return [block.name or str(at) for at, block in enumerate(recording.assembly.blocks)]
 
 
-def _side(joint: Joint, block: int, names: list[str], supports: list[dict[str, Any]]) -> str:
+def _shape(body: Any) -> dict[str, Any]:
+    """Return the outlines of a body, or the corners of its convex parts."""
+    if isinstance(body, SolidBlock):
+        return {"polyhedra_m": _lists(hull.corners for hull in body.hulls)}
+    return {"polygons_m": _lists(body.polygons)}
+
+
+def _weights(recording: Recording[Any]) -> list[float]:
+    """Return the weights of the blocks [N]."""
+    assembly = recording.assembly
+    if recording.problem.in_space:
+        return assembly.weights.tolist()
+    return [block.mass * STANDARD_GRAVITY for block in assembly.blocks]
+
+
+def _ends(joint: Joint | FaceJoint) -> dict[str, Any]:
+    """Return the ends of a joint, or the corners of the face that two blocks share."""
+    if isinstance(joint, FaceJoint):
+        return {"points_m": joint.points.tolist(), "normal": joint.normal.tolist()}
+    return {"ends_m": _lists((joint.inner, joint.outer))}
+
+
+def _side(
+    joint: Joint | FaceJoint, block: int, names: list[str], supports: list[dict[str, Any]]
+) -> str:
     if block != SUPPORT:
         return names[block]
     return "support" if joint.support is None else str(supports[joint.support]["name"])
 
 
-def _seconds(recording: Recording) -> list[float]:
-    return recording.seconds(STANDARD_GRAVITY).tolist()
-
-
-def _poses(recording: Recording) -> dict[str, Any]:
+def _poses(recording: Recording[Any]) -> dict[str, Any]:
     """Columns of the poses, each (frames, blocks)."""
     size = recording.assembly.size
-    columns = COLUMNS[: recording.poses.shape[2]]
+    in_space = recording.problem.in_space
+    columns = IN_SPACE if in_space else COLUMNS[: recording.poses.shape[2]]
     return {
         name: recording.poses[..., at] * (size if name.endswith("_m") else 1.0)
         for at, name in enumerate(columns)

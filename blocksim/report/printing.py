@@ -10,8 +10,8 @@ from pathlib import Path
 
 from blocksim.common.errors import MissingPart
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome",
-            "msedge", "microsoft-edge")  # fmt: skip
+BROWSERS = ("chromium", "chromium-browser", "chromium-headless-shell", "google-chrome",
+            "google-chrome-stable", "chrome", "msedge", "microsoft-edge")  # fmt: skip
 """Commands that print without a window."""
 PATIENCE = 120.0
 """How long a browser may take [s]."""
@@ -20,13 +20,7 @@ QUIET = ("--headless", "--disable-gpu", "--no-first-run", "--disable-background-
 
 
 def require_browser() -> str:
-    """Return the command of a browser.
-
-    Raises
-    ------
-    MissingPart
-        If there is none.
-    """
+    """Return the command of a browser; `MissingPart` where there is none."""
     found = next(filter(None, map(shutil.which, BROWSERS)), None)
     if found is None:
         remedy = "install Chromium or Chrome, or write .html and print it from any browser"
@@ -35,13 +29,7 @@ def require_browser() -> str:
 
 
 def printed_page(page: str) -> bytes:
-    """Return a page of HTML as PDF.
-
-    Raises
-    ------
-    MissingPart
-        If there is no browser, or it prints nothing.
-    """
+    """Return a page of HTML as PDF; `MissingPart` where no browser prints."""
     browser = require_browser()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         source, out = Path(folder, "page.html"), Path(folder, "page.pdf")

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import At, Line, dimensions_of, friction_angle
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.road import fill_of
 from blocksim.blocks.shaking import shaking_record
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.words import counted
-from blocksim.kinds.circular import CircularArch, weighed_arch
+from blocksim.kinds.circular import LEAST_DENSITY, CircularArch
 
 if TYPE_CHECKING:
     from blocksim.report.schema import ProblemRecord
 
+ROUNDING = 1e-9
+"""Share of gravity that is none."""
 SIZES = (
     "span_m", "rise_m", "thickness_m", "radius_m", "depth_m", "unit_weight_kN_per_m3",
 )  # fmt: skip
@@ -31,28 +32,13 @@ FOLLOWS = {
     "push": {"load"},
 }
 """What follows from each parameter that any problem may have."""
-BUILT = {
-    "span_m",
-    "rise_m",
-    "thickness_m",
-    "radius_m",
-    "weight_kN",
-    "fill_weight_kN",
-    "fill_is",
-}
+BUILT = {*SIZES[:4], "weight_kN", "fill_weight_kN", "fill_is"}
 """What follows from the parameters of a maker."""
 
 
-def problem_record(problem: Problem | SpatialProblem, over: str | None = None) -> ProblemRecord:
-    """Return a problem as answers have it; null what follows from a parameter.
-
-    Parameters
-    ----------
-    problem : Problem
-    over : str, optional
-        The parameter that is searched over.
-    """
-    spatial = isinstance(problem, SpatialProblem)
+def problem_record(problem: Problem[Any], over: str | None = None) -> ProblemRecord:
+    """Return a problem as answers have it; null what follows from what is searched over."""
+    spatial = problem.in_space
     arch = None if spatial else weighed_arch(problem)
     fill = None if spatial else fill_of(problem)
     spread = None if spatial else problem.dispersal
@@ -66,6 +52,7 @@ def problem_record(problem: Problem | SpatialProblem, over: str | None = None) -
         "lean_deg": None,
         **tilt_and_lean(problem),
         "azimuth_deg": math.degrees(problem.azimuth) if spatial else None,
+        "gravity_m_s2": (problem.gravity * STANDARD_GRAVITY).tolist(),
         "load": problem.load,
         "strength_MPa": None if problem.strength is None else problem.strength / 1e6,
         "shake": None if shaking is None else shaking_record(shaking),
@@ -84,7 +71,7 @@ def problem_record(problem: Problem | SpatialProblem, over: str | None = None) -
     return said  # type: ignore[return-value]
 
 
-def _fixed_sizes(problem: Problem | SpatialProblem, over: str) -> dict[str, object]:
+def _fixed_sizes(problem: Problem[Any], over: str) -> dict[str, object]:
     """Return what stays of a circular arch as its thickness changes: a line, or the radius."""
     maker = problem.maker
     if over != "thickness" or not isinstance(maker, CircularArch) or maker.shape is None:
@@ -98,10 +85,7 @@ def _fixed_sizes(problem: Problem | SpatialProblem, over: str) -> dict[str, obje
 
 
 def size_record(arch: Arch) -> dict[str, object]:
-    """Return the dimensions of an arch, span and rise of its intrados, for JSON.
-
-    At eta = 2 the intrados is a point, without span and rise.
-    """
+    """Return dimensions of an arch for JSON; at eta = 2 the intrados has no span and rise."""
     clear = dimensions_of(arch) if arch.eta < 2 else None
     return {
         "span_m": clear and clear.span,
@@ -113,26 +97,21 @@ def size_record(arch: Arch) -> dict[str, object]:
     }
 
 
-def measured_line(problem: Problem | SpatialProblem) -> Line | None:
+def measured_line(problem: Problem[Any]) -> Line | None:
     """Return the line of an arch that was measured; None where none was."""
     maker = problem.maker
     return maker.line if isinstance(maker, CircularArch) else None
 
 
-def at_of(problem: Problem) -> At | None:
-    """Return which line that is."""
-    line = measured_line(problem)
-    return None if line is None else line.at
-
-
-def size_lines(problem: Problem | SpatialProblem) -> list[str]:
+def size_lines(problem: Problem[Any]) -> list[str]:
     """Return the dimensions of a circular arch, and what lies on its road, in words."""
-    if isinstance(problem, SpatialProblem):
+    if problem.in_space:
         return []
     arch, fill = weighed_arch(problem), fill_of(problem)
     lines: list[str] = []
     if arch is not None:
-        lines = arch_size_lines(arch, problem.mu, at_of(problem))
+        line = measured_line(problem)
+        lines = arch_size_lines(arch, problem.mu, line and line.at)
     live = -_live(problem)
     said: list[str] = []
     if fill is not None:
@@ -152,8 +131,6 @@ def arch_size_lines(arch: Arch, mu: float | None = None, at: At | None = None) -
 
     Parameters
     ----------
-    arch : Arch
-    mu : float, optional
     at : str, optional
         The line that was measured; the intrados if none was. An arch with a radius of 1
         of which none was measured is told in radii.
@@ -187,23 +164,23 @@ def is_metric(arch: Arch, at: At | None = None) -> bool:
     return at is not None or arch.radius != 1
 
 
-def weight_of(problem: Problem | SpatialProblem) -> float:
+def weight_of(problem: Problem[Any]) -> float:
     """Weight of all blocks [N]."""
-    if isinstance(problem, SpatialProblem):
+    if problem.in_space:
         return float(problem.assembly.weights.sum())
     return sum(block.mass for block in problem.assembly.blocks) * STANDARD_GRAVITY
 
 
-def _live(problem: Problem | SpatialProblem) -> float:
+def _live(problem: Problem[Any]) -> float:
     """Vertical live loads in all at a factor of 1, upwards [N]; body forces are none."""
     loads = [load for load in problem.live if not load.per_weight]
     return float(sum(load.force[-1] * len(load.blocks) for load in loads))
 
 
-def tilt_and_lean(problem: Problem | SpatialProblem) -> dict[str, float]:
+def tilt_and_lean(problem: Problem[Any]) -> dict[str, float]:
     """Return by how many degrees a table tilts, and gravity is turned out of the plane."""
     x, y, z = problem.gravity.tolist()
-    if isinstance(problem, SpatialProblem):
+    if problem.in_space:
         tilt = math.degrees(math.atan2(math.hypot(x, y), -z))
         return {"tilt_deg": tilt}
     return {
@@ -212,13 +189,13 @@ def tilt_and_lean(problem: Problem | SpatialProblem) -> dict[str, float]:
     }
 
 
-def described(problem: Problem | SpatialProblem) -> str:
+def described(problem: Problem[Any]) -> str:
     """Say what a problem is, in a line."""
     turned = tilt_and_lean(problem)
     assembly = problem.assembly
     said = [problem.title] if problem.title else []
     said += [counted(len(assembly.blocks), "block"), counted(len(assembly.joints), "joint")]
-    spatial = isinstance(problem, SpatialProblem)
+    spatial = problem.in_space
     said.append(f"in space, mu {problem.mu:g}" if spatial else f"mu {problem.mu:g}")
     if turned["tilt_deg"]:
         said.append(f"tilted {turned['tilt_deg']:g} deg")
@@ -226,6 +203,12 @@ def described(problem: Problem | SpatialProblem) -> str:
         said.append(f"towards {math.degrees(problem.azimuth):g} deg from x")
     if turned.get("lean_deg"):
         said.append(f"gravity leans {turned['lean_deg']:g} deg out of the plane")
+    pull = math.hypot(*problem.gravity.tolist())
+    if abs(pull - 1) > ROUNDING:
+        said.append(f"gravity {pull * STANDARD_GRAVITY:g} m/s2")
+    if problem.velocities.any():
+        count = int(problem.velocities.any(axis=1).sum())
+        said.append(f"{counted(count, 'block')} in motion at the release")
     if problem.live:
         said.append(
             f"live loads times {problem.load:g}" if problem.load else "no live load on it"
@@ -236,3 +219,11 @@ def described(problem: Problem | SpatialProblem) -> str:
         said.append(problem.shaking.words)
     said.append(f"L = {assembly.size:g} m" if problem.has_size else "L = r")
     return ", ".join(said)
+
+
+def weighed_arch(problem: Problem) -> Arch | None:
+    """Return the circular arch of a problem; None without a density: its weights are ratios."""
+    maker = problem.maker
+    if not isinstance(maker, CircularArch):
+        return None
+    return maker.shape if maker.in_radii or maker.unit_weight >= LEAST_DENSITY else None

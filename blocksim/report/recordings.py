@@ -32,7 +32,7 @@ def recording_record(recording: Recording) -> dict[str, object]:
         "recorded_s": float(recording.seconds(STANDARD_GRAVITY)[-1]),
         "moved_m": float(recording.displacement[-1]) * size,
         "largest_rotation_deg": math.degrees(rocking.rotation),
-        "gravity_m_s2": STANDARD_GRAVITY,
+        "gravity_m_s2": (problem.gravity * STANDARD_GRAVITY).tolist(),
         "quality": to_record(recording.quality),
         "overlap_of_smallest_block": recording.overlap_share,
         "state_hash": recording.state_hash,
@@ -60,7 +60,9 @@ def recording_lines(recording: Recording, unit: str) -> list[str]:
     if said:
         lines.append("  " + ", ".join(said))
     said = []
-    if kept.penetration is not None:
+    if kept.penetration is None:
+        said.append(f"{recording.engine} does not tell how deep blocks overlap")
+    else:
         said.append(
             f"blocks overlap by at most {kept.penetration:.1e} {unit}, "
             f"{recording.overlap_share:.2g} of the smallest"
@@ -69,8 +71,9 @@ def recording_lines(recording: Recording, unit: str) -> list[str]:
         )
     if kept.gain is not None:
         said.append(
-            f"energy at most {kept.gain:.2%} of what fell above that at the release"
-            if kept.gain
+            "energy rose above that at the release by at most "
+            f"{100 * kept.gain:.1g} % of what fell"
+            if kept.gain > ROUNDING
             else "there was never more energy than at the release"
         )
     if said:
@@ -78,8 +81,11 @@ def recording_lines(recording: Recording, unit: str) -> list[str]:
     if kept.error is not None:
         until = recording.times[-1] if kept.known is None else kept.known
         ends = "" if kept.known is None else ", not known beyond"
+        apart = f"differs by at most {kept.error:.1e} {unit}"
+        found = "is the same" if kept.error <= ROUNDING else apart
+        unit_s = problem.seconds
+        late = "" if kept.late is None else f", in time by {kept.late * unit_s:.1e} s,"
         lines.append(
-            f"  right to {kept.error:.1e} {unit} until {until * problem.seconds:.3g} s{ends}, "
-            "says a run at twice the step"
+            f"  a run at twice the step {found}{late} until {until * unit_s:.3g} s{ends}"
         )
     return lines

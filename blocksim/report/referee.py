@@ -13,10 +13,9 @@ from blocksim.common.files import (
     AnyPath,
     json_of,
     json_text,
-    make_folder,
     read_file,
     shipped_files,
-    write_whole,
+    write_folder,
 )
 from blocksim.common.sheets import sheet_of
 from blocksim.common.version import __version__
@@ -36,13 +35,7 @@ def known_scores() -> list[dict[str, Any]]:
 
 
 def read_score(path: AnyPath) -> dict[str, Any]:
-    """Read a score.json of before.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
+    """Read a score.json of before."""
     allowed = "a score.json as blocksim suite score writes it"
     text = read_file(path, "--expect", allowed, LARGEST)
     found: Any = None
@@ -91,15 +84,7 @@ def score_lines(record: Mapping[str, Any], known: Sequence[Mapping[str, Any]]) -
 
 
 def write_score(score: Score, folder: AnyPath) -> list[Path]:
-    """Write score.html, score.json and rows.csv into a folder.
-
-    Raises
-    ------
-    InputError, MachineError
-        If they cannot be written.
-    """
-    folder = Path(folder)
-    make_folder(folder)
+    """Write score.html, score.json and rows.csv into a folder."""
     record = score.record()
     rows = [list(asdict(row).values()) for row in score.rows]
     contents = {
@@ -107,19 +92,11 @@ def write_score(score: Score, folder: AnyPath) -> list[Path]:
         "score.json": f"{json_text(record, indent=1)}\n".encode(),
         "rows.csv": sheet_of(list(Row.__dataclass_fields__), rows),
     }
-    for name, text in contents.items():
-        write_whole(folder / name, lambda file, text=text: file.write(text))
-    return [folder / name for name in contents]
+    return write_folder(folder, contents)
 
 
 def score_page(records: Sequence[Mapping[str, Any]]) -> str:
-    """Write a page on several engines, the first of which it is about.
-
-    Returns
-    -------
-    str
-        HTML that loads nothing.
-    """
+    """Write a page on several engines, the first of which it is about, that loads nothing."""
     pages = environment()
     pages.filters["level"] = level_words
     groups = list(dict.fromkeys(name for record in records for name in record["groups"]))

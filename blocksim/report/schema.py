@@ -30,6 +30,7 @@ class ProblemRecord(TypedDict):
     tilt_deg: float | None
     azimuth_deg: float | None
     lean_deg: float | None
+    gravity_m_s2: list[float]
     load: float | None
     strength_MPa: float | None
     shake: dict[str, Any] | None
@@ -71,9 +72,9 @@ class ArchRecord(TypedDict):
 class ArchBracketRecord(ArchRecord):
     """The same of a bracket over its thickness."""
 
+    fixed_line: str
     eta_low: float | None
     eta_high: float | None
-    fixed_line: str
     thrust: Number | None
     beta_r_deg: float | None
     beta_s_deg: float | None
@@ -245,6 +246,27 @@ class BracketRecord(TypedDict):
     splits: int | None
     wall_s: float
     arch: ArchBracketRecord | None
+
+
+class CaseRecord(TypedDict):
+    """A case with its partial factors, and its answer, which is of the factored problem."""
+
+    name: str
+    factors: dict[str, float]
+    used: Number | None
+    reserve: Number | None
+    answer: CheckRecord
+
+
+class CasesRecord(TypedDict):
+    """Answer of `check --cases`, the governing case first."""
+
+    version: str
+    title: str
+    governing: str
+    verdict: str
+    cases: list[CaseRecord]
+    wall_s: float
 
 
 class PlaceRecord(TypedDict):

@@ -4,26 +4,26 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from blocksim.arch.answers import ArchAnswer
 from blocksim.ask.check import Check
 from blocksim.blocks.joints import joint_names
-from blocksim.blocks.maker import Maker
+from blocksim.blocks.maker import Kind
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import fill_of
 from blocksim.common.fields import fields_of
-from blocksim.kinds.circular import weighed_arch
-from blocksim.limit import in_world, reactions, resultants
+from blocksim.limit import in_world, reactions
 from blocksim.limit.carried import Carried
-from blocksim.report.problems import tilt_and_lean
+from blocksim.report.problems import tilt_and_lean, weighed_arch
 from blocksim.view.arrows import forces_of
 from blocksim.view.dimensions import Angle, dimensions_of
 from blocksim.view.sheet import LARGEST, Sheet
+from blocksim.view.solidscene import moving_box
 from blocksim.view.thrustlines import is_chained, thrust_of
-from blocksim.view.units import ForceUnit, length_words, unit_weight
+from blocksim.view.units import ForceUnit, common_depth, length_words, unit_weight
 
 MOST = 60
 """Joints in the table; of more, those that are used most."""
@@ -47,24 +47,19 @@ class JointRow:
     name: str
     normal: str
     friction: str
-    eccentricity: str
-    stress: str
-    width_used: str
     friction_used: str
     worst: bool
+    eccentricity: str = ""
+    stress: str = ""
+    width_used: str = ""
 
 
 def built_facts(sheet: Sheet) -> list[Fact]:
     """Tell dimensions and weights of what is built."""
     problem, unit = sheet.problem, sheet.unit
-    assembly, arch = problem.assembly, weighed_arch(problem)
-    corners = np.concatenate([block.vertices for block in assembly.blocks])
-    facts: list[Fact] = []
-    for each in dimensions_of(problem, corners, 1.0):
-        if isinstance(each, Angle):
-            facts.append(Fact("half-angle of embrace", f"{math.degrees(each.value):.4g}°"))
-        else:
-            facts.append(Fact(each.what, length_words(each.value), each.note))
+    assembly = problem.assembly
+    arch = None if problem.in_space else weighed_arch(problem)
+    facts = _dimensions(problem)
     if arch is not None:
         facts.append(Fact("radius", length_words(arch.radius), "centreline"))
         facts.append(Fact("thickness over radius", f"η = {arch.eta:.4g}"))
@@ -72,9 +67,9 @@ def built_facts(sheet: Sheet) -> list[Fact]:
         Fact("voussoirs" if arch else "blocks", str(len(assembly.blocks))),
         Fact("joints", str(len(assembly.joints))),
     ]
-    depths = assembly.depths * assembly.size
-    if np.ptp(depths) <= 1e-9 * depths.max():
-        facts.append(Fact("depth", f"{depths[0]:.4g} m"))
+    depth = common_depth(problem)
+    if depth is not None:
+        facts.append(Fact("depth", f"{depth:.4g} m"))
     facts.append(Fact("friction coefficient", *_friction(problem)))
     heavy = unit_weight(problem)
     if heavy is not None:
@@ -88,23 +83,37 @@ def built_facts(sheet: Sheet) -> list[Fact]:
     ):
         forces = [force for load in loads for _, force in forces_of(problem, load)]
         if forces:
-            total = float(np.hypot(*np.sum(forces, axis=0)))
+            total = float(np.linalg.norm(np.sum(forces, axis=0)))
             facts.append(Fact(name, unit.words(total), note))
     return facts
 
 
-def given_facts(problem: Problem) -> list[Fact]:
+def _dimensions(problem: Problem[Any]) -> list[Fact]:
+    if problem.in_space:
+        low, high = moving_box(problem.assembly)
+        sides = " x ".join(f"{side:.4g}" for side in high - low)
+        return [Fact("length, width, height", f"{sides} m", "of all blocks")]
+    corners = np.concatenate([block.vertices for block in problem.assembly.blocks])
+    return [
+        Fact("half-angle of embrace", f"{math.degrees(each.value):.4g}°")
+        if isinstance(each, Angle)
+        else Fact(each.what, length_words(each.value), each.note)
+        for each in dimensions_of(problem, corners, 1.0)
+    ]
+
+
+def given_facts(problem: Problem[Any]) -> list[Fact]:
     """Echo every parameter that a kind of structure was made with."""
     return [] if problem.maker is None else _parameters(problem.maker, "")
 
 
-def _parameters(maker: Maker, path: str) -> list[Fact]:
+def _parameters(maker: Kind[Any], path: str) -> list[Fact]:
     found: list[Fact] = []
     for name, known in fields_of(type(maker)).items():
         value = getattr(maker, name)
-        if isinstance(value, Maker):
+        if isinstance(value, Kind):
             found.append(Fact(f"{path}{name}", value.name, known.about))
-            found += _parameters(value, f"{path}{name}.")
+            found += _parameters(cast("Kind[Any]", value), f"{path}{name}.")
         elif value is not None:
             unit = f" {known.unit}" if known.unit and not isinstance(value, str) else ""
             found.append(Fact(f"{path}{name}", f"{known.said(value)}{unit}", known.about))
@@ -127,7 +136,7 @@ def road_facts(problem: Problem) -> list[Fact]:
     return facts
 
 
-def _friction(problem: Problem) -> tuple[str, str]:
+def _friction(problem: Problem[Any]) -> tuple[str, str]:
     if math.isinf(problem.mu):
         return "∞", "joints do not slide"
     own = (problem.friction != problem.mu).any()
@@ -135,12 +144,12 @@ def _friction(problem: Problem) -> tuple[str, str]:
     return f"μ = {problem.mu:.4g}", angle + ("; some joints have their own" if own else "")
 
 
-def load_words(problem: Problem) -> list[str]:
+def load_words(problem: Problem[Any]) -> list[str]:
     """Say what acts."""
     words = ["Own weight acts at each block's centre of mass."]
     if getattr(problem.maker, "weight", "") == "centreline":
         words = ["Own weight acts at the centroid of each voussoir's part of the centreline."]
-    if (fill := fill_of(problem)) is not None:
+    if not problem.in_space and (fill := fill_of(problem)) is not None:
         words += [f"Fill: {each}." for each in fill.words]
         if problem.soil is None or not any(problem.soil.pressure):
             words.append("Fill does not press from the side.")
@@ -155,15 +164,18 @@ def load_words(problem: Problem) -> list[str]:
         words.append(f"{count} live load{'s' * (count > 1)}, {factor}.")
     turned = tilt_and_lean(problem)
     if abs(turned["tilt_deg"]) > 1e-9:
-        words.append(f"Gravity is tilted by {turned['tilt_deg']:.4g}° in the plane.")
-    if turned["lean_deg"]:
+        where = "in the plane"
+        if problem.in_space:
+            where = f"towards {math.degrees(problem.azimuth):.4g}° from x"
+        words.append(f"Gravity is tilted by {turned['tilt_deg']:.4g}° {where}.")
+    if turned.get("lean_deg"):
         words.append(f"Gravity leans {turned['lean_deg']:.4g}° out of the plane.")
     if problem.shaking is not None:
         words.append(f"The ground shakes: {problem.shaking.words}.")
     return words
 
 
-def assumptions(problem: Problem) -> list[str]:
+def assumptions(problem: Problem[Any]) -> list[str]:
     """Say what is taken for granted."""
     law = "Joints do not slide." if math.isinf(problem.mu) else (
         "Coulomb friction in all joints, without cohesion."
@@ -183,7 +195,7 @@ def assumptions(problem: Problem) -> list[str]:
     ]
 
 
-def factor_facts(answer: Check, sheet: Sheet) -> list[Fact]:
+def factor_facts(answer: Check[Any], sheet: Sheet) -> list[Fact]:
     """Tell how far it is from falling."""
     problem, carried = answer.problem, sheet.carried
     facts: list[Fact] = []
@@ -224,7 +236,7 @@ def _margin_facts(carried: Carried, *, of_thickness: bool) -> list[Fact]:
         facts.append(Fact("friction factor", said, needed))
     if carried.strength_used is not None:
         both = "of width and of friction at once, in the state of greatest margin"
-        facts.append(Fact("strength used", _percent(carried.strength_used), both))
+        facts.append(Fact("strength used", percent(carried.strength_used), both))
     return facts
 
 
@@ -295,9 +307,9 @@ def reaction_table(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
 def joint_rows(sheet: Sheet) -> list[JointRow]:
     """Tell what joints carry in the state of greatest margin, in their order."""
     carried, problem, unit = sheet.carried, sheet.problem, sheet.unit
-    if carried is None or not carried.stands or carried.forces is None:
+    found = None if carried is None else carried.resultants
+    if found is None:
         return []
-    found = resultants(problem, carried.forces)
     joints = problem.assembly.joint_arrays
     middle = joints.ends.mean(axis=1) * problem.assembly.size
     off = ((found.point - middle) * joints.tangent).sum(axis=1)
@@ -311,8 +323,8 @@ def joint_rows(sheet: Sheet) -> list[JointRow]:
             friction=unit.number(float(found.friction[k])),
             eccentricity="-" if np.isnan(off[k]) else f"{1e3 * off[k] + 0.0:.0f}",
             stress=_stress(float(found.stress[k])) if known else "-",
-            width_used=_percent(float(found.width_used[k])),
-            friction_used=_percent(float(found.friction_used[k])),
+            width_used=percent(float(found.width_used[k])),
+            friction_used=percent(float(found.friction_used[k])),
             worst=k == worst,
         )
         for k in map(int, chosen)
@@ -323,7 +335,8 @@ def _stress(pascal: float) -> str:
     return "-" if math.isnan(pascal) else f"{pascal / 1e6:.3g}"
 
 
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
+    """Return a share in per cent."""
     return f"{100 * share:.1f}\N{NO-BREAK SPACE}%"
 
 

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import io
-from dataclasses import dataclass
+from collections import Counter
+from typing import Any
 
 from blocksim.arch.modes import Mode
+from blocksim.ask.cases import Cases
 from blocksim.ask.check import Check, check
 from blocksim.blocks.joints import JointState, joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.common.dates import is_dated, made_at
 from blocksim.common.version import __version__
 from blocksim.kinds.offers import offers_of
-from blocksim.limit import equilibrium
+from blocksim.limit.space import SpatialEquilibrium
 from blocksim.report.answerwords import ASIDE, proof_words
+from blocksim.report.cases import HEADINGS, case_row
 from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_picture
-from blocksim.report.motion import Drawing, mechanism_drawing
+from blocksim.report.motion import mechanism_drawing
 from blocksim.report.sheetfacts import (
     MOST,
     Fact,
@@ -30,109 +33,135 @@ from blocksim.report.sheetfacts import (
     road_facts,
     thrust_facts,
 )
+from blocksim.report.solidfacts import solid_joints, solid_reactions
 from blocksim.simulation.verdict import Verdict, reason_of
-from blocksim.studies.questions import Drawn
-from blocksim.view import style
 from blocksim.view.drawing import save_figure, state_of_any, words_of
 from blocksim.view.sheet import Sheet, Titles, answer_sheet
 from blocksim.view.sheetfigure import sheet_figure
+from blocksim.view.solidfigure import solid_figure
+from blocksim.view.turning import turning_page
 
 COLUMN = (182.0, 128.0)
 """Width and most height of the drawing on the page [mm]."""
+LOWER = (182.0, 90.0)
+"""The same of the drawing of pressures."""
 FEW = 8
 """Joints up to which their table is not halved."""
 BELOW = 0.999
 """Share of its least thickness at which it is shown how an arch would fall."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Fall:
-    """How it falls, or would fall: a drawing that moves, and its words."""
-
-    drawing: Drawing
-    caption: str
-    words: str
-    states: tuple[JointState, ...]
-
-
 def structure_page(
-    answer: Check,
+    answer: Check[Any],
     *,
     mode: Mode | None = None,
     command: str = "",
     settings: str = "",
     titles: Titles | None = None,
+    cases: Cases | None = None,
 ) -> str:
     """Write the report on one structure.
 
     Parameters
     ----------
-    answer : Check
     mode : Mode or None
         In which an arch falls.
     command, settings : str
         The command line and the settings it was made with, to be printed.
     titles : Titles, optional
         What the title block says.
+    cases : Cases, optional
+        Those among which the answer is that of the governing one.
 
     Returns
     -------
     str
         HTML that loads nothing.
     """
-    problem = answer.problem
     sheet = answer_sheet(answer, titles)
-    file = io.BytesIO()
-    save_figure(sheet_figure(sheet, column=COLUMN, bare=True), file, "svg")
-    picture, dark = inline_picture(file.getvalue(), "sheet", "img")
-    headings, reactions = reaction_table(sheet)
-    rows = joint_rows(sheet)
-    half = (len(rows) + 1) // 2
-    return (
-        environment()
-        .get_template("sheet.html")
-        .render(
-            title=sheet.title,
-            source=problem.source,
-            answer=answer,
-            mode=mode,
-            verdicts=_verdicts(answer, sheet),
-            titles=dict(sheet.titles.said),
-            proof=proof_words(answer) if answer.method == "limit" else "",
-            built=built_facts(sheet),
-            given=given_facts(problem),
-            road=road_facts(problem),
-            assumptions=assumptions(problem),
-            factors=factor_facts(answer, sheet),
-            thrusts=thrust_facts(sheet),
-            states=headings,
-            reactions=reactions,
-            forces=force_words(sheet.unit),
-            unit=sheet.unit.name,
-            joints=(rows[:half], rows[half:]) if len(rows) > FEW else (rows,),
-            joint_count=len(problem.assembly.joints),
-            most=MOST,
-            active=_active(answer),
-            picture=picture,
-            described=", ".join(line.words for line in sheet.lines),
-            colours=dark,
-            fall=_fall(answer),
-            state_words={
-                each.value: words_of(each, is_arch=False)[0]
-                for each in JointState
-                if each in style.JOINTS
-            },
-            notes=problem.notes,
-            version=__version__,
-            made=made_at(),
-            took="" if is_dated() else f", in {answer.wall_s:.2g} s",
-            command=command,
-            settings=settings,
-        )
+    template, fall = environment().get_template("sheet.html"), _fall(answer)
+    return template.render(
+        answer=answer,
+        mode=mode,
+        cases=[] if cases is None else list(map(case_row, cases.answers)),
+        case_headings=HEADINGS,
+        case_title="" if cases is None else cases.title,
+        governing="" if cases is None else cases.governing.case.name,
+        fall=fall,
+        most=MOST,
+        version=__version__,
+        made=made_at(),
+        took="" if is_dated() else f", in {answer.wall_s:.2g} s",
+        command=command,
+        settings=settings,
+        **_said(answer, sheet),
+        **_drawn(sheet, answer, answer if fall is None else fall["answer"]),
     )
 
 
-def _verdicts(answer: Check, sheet: Sheet) -> list[tuple[str, Verdict, str]]:
+def _said(answer: Check[Any], sheet: Sheet) -> dict[str, object]:
+    """Return what the page says of a structure and of the answer."""
+    problem = answer.problem
+    headings, reactions = reaction_table(sheet)
+    rows = joint_rows(sheet)
+    if problem.in_space and isinstance(answer.static, SpatialEquilibrium):
+        forces = answer.static.point_forces
+        if forces is not None:
+            headings, reactions = ["force"], solid_reactions(problem, forces, sheet.unit)
+            rows = solid_joints(problem, forces, sheet.unit)
+    half = (len(rows) + 1) // 2
+    return {
+        "title": sheet.title,
+        "source": problem.source,
+        "notes": problem.notes,
+        "verdicts": _verdicts(answer, sheet),
+        "titles": dict(sheet.titles.said),
+        "proof": proof_words(answer) if answer.method == "limit" else "",
+        "built": built_facts(sheet),
+        "given": given_facts(problem),
+        "road": [] if problem.in_space else road_facts(problem),
+        "assumptions": assumptions(problem),
+        "factors": factor_facts(answer, sheet),
+        "thrusts": thrust_facts(sheet),
+        "states": headings,
+        "reactions": reactions,
+        "forces": force_words(sheet.unit),
+        "unit": sheet.unit.name,
+        "joints": (rows[:half], rows[half:]) if len(rows) > FEW else (rows,),
+        "joint_count": len(problem.assembly.joints),
+        "solid": problem.in_space,
+        "axes": "xyz" if problem.in_space else "HV",
+        "active": _active(answer),
+    }
+
+
+def _drawn(sheet: Sheet, answer: Check[Any], falling: Check[Any]) -> dict[str, object]:
+    """Return the drawing, and what else is known, for the page.
+
+    In the plane pressures along joints; in space how it falls, and a page to turn it around.
+    """
+    drawn: dict[str, object] = {"pressures": "", "falling": "", "turned": ""}
+    if answer.problem.in_space:
+        pictures = {"sheet": solid_figure(answer)}
+        if falling is not answer:
+            pictures["falling"] = solid_figure(falling)
+        drawn["turned"] = turning_page(falling)
+    else:
+        pictures = {"sheet": sheet_figure(sheet, column=COLUMN, bare=True)}
+        if sheet.carried is not None and sheet.carried.resultants is not None:
+            lower = sheet_figure(sheet.pressures, column=LOWER, bare=True)
+            pictures["pressures"] = lower
+    colours: dict[str, str] = {}
+    for name, figure in pictures.items():
+        file = io.BytesIO()
+        save_figure(figure, file, "svg")
+        drawn[name], dark = inline_picture(file.getvalue(), "sheet", "img", name)
+        colours |= dark
+    said = ", ".join(line.words for line in sheet.lines)
+    return {**drawn, "picture": drawn["sheet"], "described": said, "colours": colours}
+
+
+def _verdicts(answer: Check[Any], sheet: Sheet) -> list[tuple[str, Verdict, str]]:
     """Return method, verdict and reason: by limit analysis, and by the method asked for."""
     words = "limit analysis"
     method = words if answer.method == "limit" else answer.method
@@ -145,9 +174,17 @@ def _verdicts(answer: Check, sheet: Sheet) -> list[tuple[str, Verdict, str]]:
     return [(words, Verdict.STANDS if static else Verdict.COLLAPSES, reason), asked]
 
 
-def _active(answer: Check) -> list[Fact]:
-    """Joints that take part as it falls."""
+def _active(answer: Check[Any]) -> list[Fact]:
+    """Joints that take part as it falls; in space, where they are many, how many do what."""
     problem = answer.problem
+    if problem.in_space:
+        states = map(state_of_any, (joint.state for joint in answer.joints))
+        done = Counter(state for state in states if state is not JointState.CLOSED)
+        of = len(answer.joints)
+        return [
+            Fact(f"{done[state]} of {of}", words_of(state, is_arch=False)[0])
+            for state in sorted(done)
+        ]
     names = joint_names(problem.assembly)
     return [
         Fact(names[index], words_of(joint.state, is_arch=problem.is_arch)[0], str(index))
@@ -156,15 +193,11 @@ def _active(answer: Check) -> list[Fact]:
     ]
 
 
-def _fall(answer: Check) -> Fall | None:
+def _fall(answer: Check[Any]) -> dict[str, Any] | None:
     """Show how it falls; what stands, beyond its load factor or below its least thickness."""
     problem = answer.problem
     if answer.mechanism is not None:
-        states = tuple(joint.state for joint in answer.joints)
-        drawn = Drawn(
-            problem=problem, rates=answer.mechanism, states=states, method=answer.method
-        )
-        return _shown(drawn, f"how it starts to fall, by {answer.method}")
+        return _shown(answer, f"how it starts to fall, by {answer.method}")
     factor = answer.load_factor
     if factor is not None and 0 < factor < float("inf") and not problem.shaking:
         over = problem.with_load(factor * (1 + 1e-3))
@@ -179,27 +212,23 @@ def _fall(answer: Check) -> Fall | None:
     )
 
 
-def _asked(problem: Problem, words: str) -> Fall | None:
-    if equilibrium(problem).exists:
-        return None
+def _asked(problem: Problem[Any], words: str) -> dict[str, Any] | None:
     found = check(problem, method="limit")
-    states = tuple(joint.state for joint in found.joints)
-    drawn = Drawn(problem=problem, rates=found.mechanism, states=states, method="limit")
-    return None if found.mechanism is None else _shown(drawn, f"{words}, by limit analysis")
+    return None if found.mechanism is None else _shown(found, f"{words}, by limit analysis")
 
 
-def _shown(drawn: Drawn, caption: str) -> Fall:
-    names = joint_names(drawn.problem.assembly)
-    active = [
-        f"{names[index]} {words_of(state, is_arch=drawn.problem.is_arch)[0]}"
-        for index, state in enumerate(drawn.states)
-        if state is not JointState.CLOSED
-    ]
-    seen = {state_of_any(state) for state in drawn.states} - {JointState.CLOSED}
+def _shown(answer: Check[Any], caption: str) -> dict[str, Any]:
+    """Draw how it falls (in space it is turned around), with words and a legend."""
+    problem, states = answer.problem, tuple(joint.state for joint in answer.joints)
+    is_arch, rates = problem.is_arch, answer.mechanism
+    active = [f"{each.name} {each.value}" for each in _active(answer)]
+    looks = {state if is_arch else state_of_any(state) for state in states}
+    seen = sorted(looks - {JointState.CLOSED})
     words = f"Joints that take part: {', '.join(active)}." if active else "Blocks move."
-    return Fall(
-        drawing=mechanism_drawing(drawn),
-        caption=f"{caption}, enlarged",
-        words=words,
-        states=tuple(sorted(seen)),
-    )
+    return {
+        "answer": answer,
+        "drawing": None if problem.in_space else mechanism_drawing(problem, rates, states),
+        "caption": f"{caption}, enlarged",
+        "words": words,
+        "states": {state.value: words_of(state, is_arch=is_arch)[0] for state in seen},
+    }

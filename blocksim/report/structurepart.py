@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import Any
 
-from blocksim.report.motion import Drawing, mechanism_drawing
-from blocksim.report.structurewords import error_of, found_of, question_of
+from blocksim.report.motion import mechanism_drawing
+from blocksim.report.structurewords import question_of
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.questions import StructureRow
 
@@ -14,45 +14,7 @@ QUANTITIES = {"load": "load factor", "mu": "friction", "pier_width": "pier width
 """Parameters in words, where their names are none."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Answered:
-    """A row as the page shows it."""
-
-    row: StructureRow
-    found: str
-    error: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Asked:
-    """A question about a structure, and every method's answer."""
-
-    question: str
-    known: str
-    published: str
-    hinges: str
-    answers: tuple[Answered, ...]
-
-
-@dataclass(frozen=True, kw_only=True)
-class ShownStructure:
-    """A structure with all that was asked about it, and how it falls."""
-
-    number: int
-    anchor: str
-    row: StructureRow
-    asked: tuple[Asked, ...]
-    drawing: Drawing | None
-    caption: str
-    words: str
-
-    @property
-    def lines(self) -> int:
-        """Rows of the table it takes."""
-        return sum(len(each.answers) for each in self.asked)
-
-
-def shown_structures(rows: Sequence[StructureRow]) -> list[ShownStructure]:
+def shown_structures(rows: Sequence[StructureRow]) -> list[dict[str, Any]]:
     """Gather rows by structure and question."""
     names = dict.fromkeys(row.structure for row in rows)
     return [
@@ -61,7 +23,8 @@ def shown_structures(rows: Sequence[StructureRow]) -> list[ShownStructure]:
     ]
 
 
-def _shown(number: int, rows: list[StructureRow]) -> ShownStructure:
+def _shown(number: int, rows: list[StructureRow]) -> dict[str, Any]:
+    """Return a structure with all that was asked about it, and how it falls."""
     questions = dict.fromkeys(row.question for row in rows)
     falls = [row for row in rows if row.drawn is not None and row.drawn.rates is not None]
     seen = [row for row in falls if row.method != "limit"]
@@ -69,35 +32,37 @@ def _shown(number: int, rows: list[StructureRow]) -> ShownStructure:
     still = [row for row in rows[::-1] if row.drawn is not None]
     best = (seen or falls or still or [None])[0]
     drawn = best.drawn if best else None
-    drawing = None if drawn is None else mechanism_drawing(drawn)
+    # Blocks in space are not drawn here yet.
+    drawing = None
+    if drawn is not None and not drawn.problem.in_space:
+        drawing = mechanism_drawing(drawn.problem, drawn.rates, drawn.states)
     caption, words = _told(best) if best else ("", "")
-    return ShownStructure(
-        number=number,
-        anchor=f"structure-{number}",
-        row=rows[0],
-        asked=tuple(
-            _asked([row for row in rows if row.question == question]) for question in questions
-        ),
-        drawing=drawing,
-        caption=caption,
-        words=words,
-    )
+    asked = [_asked([row for row in rows if row.question == each]) for each in questions]
+    return {
+        "number": number,
+        "anchor": f"structure-{number}",
+        "row": rows[0],
+        "asked": asked,
+        "lines": len(rows),
+        "drawing": drawing,
+        "caption": caption,
+        "words": words,
+    }
 
 
-def _asked(rows: list[StructureRow]) -> Asked:
+def _asked(rows: list[StructureRow]) -> dict[str, Any]:
+    """Return a question about a structure, and every method's answer."""
     first = rows[0]
     known = "stands at any" if first.expected == 0 else f"{first.expected or 0:.8g}"
     if first.expected_verdict is not None:
         known = first.expected_verdict.value
-    return Asked(
-        question=question_of(first),
-        known=known,
-        published=first.published or "-",
-        hinges=", ".join(map(str, first.expected_hinges)),
-        answers=tuple(
-            Answered(row=row, found=found_of(row), error=error_of(row)) for row in rows
-        ),
-    )
+    return {
+        "question": question_of(first),
+        "known": known,
+        "published": first.published or "-",
+        "hinges": ", ".join(map(str, first.expected_hinges)),
+        "answers": rows,
+    }
 
 
 def _told(row: StructureRow) -> tuple[str, str]:

@@ -8,13 +8,12 @@ import platform
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
-from operator import methodcaller
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import blocksim
 from blocksim.ask.methods import METHODS
-from blocksim.common.files import AnyPath, json_text, make_folder, write_whole
+from blocksim.common.files import AnyPath, json_text, write_folder
 from blocksim.common.sheets import sheet_of
 from blocksim.engines import ENGINES, NAMES, engine_named
 from blocksim.report.inlinemap import PAGE
@@ -80,21 +79,16 @@ def write_results(
 
     Parameters
     ----------
-    rows : sequence of Validation
-    folder : str or path
     unasked : sequence of Unasked
         What was not asked, and why; said in the page and in the JSON.
     structures : sequence of StructureRow
         Of the second part; where there are some, structures.csv is written, too.
-    structures_unasked : sequence of Unasked
 
     Raises
     ------
     InputError, MachineError
         If they cannot be written.
     """
-    folder = Path(folder)
-    make_folder(folder)
     records = [as_record(row) for row in rows]
     built = [structure_record(row) for row in structures]
     asked = [row.engine for row in rows] + [row.method for row in structures]
@@ -127,12 +121,13 @@ def write_results(
     }
     if built:
         contents["structures.csv"] = _sheet(built)
-    return write_contents(folder, {**contents, **drawn})
+    return write_folder(folder, {**contents, **drawn})
 
 
 def _sheet(records: Sequence[dict[str, object]]) -> bytes:
     """Return records, all with the same keys, as the content of a CSV file."""
-    return sheet_of(list(records[0]), (list(each.values()) for each in records))
+    columns = list(records[0]) if records else []
+    return sheet_of(columns, (list(each.values()) for each in records))
 
 
 def as_json(document: object) -> bytes:
@@ -148,13 +143,6 @@ def pictures(name: str, figure: Figure) -> dict[str, bytes]:
         save_figure(figure, file, kind)
         drawn[f"{name}.{kind}"] = file.getvalue()
     return drawn
-
-
-def write_contents(folder: Path, contents: dict[str, bytes]) -> list[Path]:
-    """Write files, by name, into a folder that is there."""
-    for name, content in contents.items():
-        write_whole(folder / name, methodcaller("write", content))
-    return [folder / name for name in contents]
 
 
 def _points(rows: Sequence[Validation]) -> list[MapPoint]:

@@ -31,7 +31,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,23 +42,20 @@ from blocksim.blocks.bodies import (
     about,
     carried_poses,
     carried_rates,
+    connected,
+    parting,
     problem_of_bodies,
     within_bodies,
 )
 from blocksim.blocks.problem import Problem
-from blocksim.common.later import Library
 from blocksim.limit import equilibrium, nearest_mechanism
 from blocksim.limit.cones import Cones
 from blocksim.limit.programme import most_common
 from blocksim.simulation.verdict import Verdict
 
 if TYPE_CHECKING:
-    from scipy import sparse
-    from scipy.sparse import csgraph
-
     from blocksim.simulation.onset import Onset
-else:
-    sparse, csgraph = Library("scipy.sparse"), Library("scipy.sparse.csgraph")
+    from blocksim.simulation.simulated import Simulation
 
 ROUNDS = 2
 """Guesses that are mended, before all blocks are simulated: more are seldom worth it."""
@@ -152,19 +149,14 @@ class Merging:
         """Return forces in the joints of the bodies, in the unit of theirs."""
         return self.whole.unit_force / self.problem.unit_force * forces[list(self.kept)]
 
-    def mended(
-        self,
-        first: Onset,
-        resultants: Array,
-        problem: Problem,
-        allowed: float,
-        *,
-        takes_forces: bool,
+    def revised(
+        self, first: Onset, resultants: Array, simulation: Simulation[Any]
     ) -> Merging | None:
         """Return this where it stands for all blocks, else what comes nearer; see `Reduced`."""
         if first.verdict is Verdict.UNDECIDED:
             return None
-        holds, rates = self.parting(resultants, problem, allowed)
+        problem, takes_forces = simulation.taken, simulation.engine.takes_forces
+        holds, rates = self.parting(resultants, problem, simulation.settings.still)
         if holds:
             return self
         if first.verdict is Verdict.STANDS and first.forces is None and takes_forces:
@@ -217,7 +209,7 @@ class Merging:
         joints, kept = whole.joint_arrays, list(self.kept)
         centres = whole.centres / whole.size
         unit = self.problem.unit_force / problem.unit_force
-        acting = problem.pull()
+        acting = problem.applied_forces()
         for sides, sign in ((joints.before[kept], -1.0), (joints.after[kept], 1.0)):
             on = sides != SUPPORT
             wrench = sign * unit * about(resultants[on], centres[sides[on]])
@@ -237,22 +229,11 @@ def _unless_many(merging: Merging) -> Merging | None:
 
 def _alike(assembly: Assembly, rates: Array, within: NDArray[np.bool_] | None = None) -> Owner:
     """Return the body of each block, of those that rates do not part across joints `within`."""
-    joints = assembly.joint_arrays
-    centres = assembly.built[:, :2]
-    moved = np.vstack([rates, np.zeros(PLANAR)])
-    ways: list[Array] = []
-    for side in (joints.before, joints.after):
-        arm = joints.ends - centres[side][:, None]
-        across = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
-        ways.append(moved[side][:, None, :2] + moved[side][:, None, 2:] * across)
+    joints, (ways, turns) = assembly.joint_arrays, parting(assembly, rates)
     least = MOVES * max(float(np.abs(rates).max()), 1e-300)
-    together = np.abs(ways[1] - ways[0]).max(axis=(1, 2)) <= least
     # A block may turn about the only corner it rests on.
-    together &= np.abs(moved[joints.after, 2] - moved[joints.before, 2]) <= least
+    together = (np.abs(ways).max(axis=(1, 2)) <= least) & (np.abs(turns) <= least)
     together &= (joints.before != SUPPORT) & (joints.after != SUPPORT)
     if within is not None:
         together &= within
-    pairs = joints.before[together], joints.after[together]
-    count = len(rates)
-    graph = sparse.coo_array((np.ones(len(pairs[0])), pairs), shape=(count, count))
-    return csgraph.connected_components(graph, directed=False)[1].astype(np.int64)
+    return connected(len(rates), joints.before[together], joints.after[together])

@@ -26,23 +26,23 @@ is watched until `QUIET` only: what does not rest by then will not.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
-from typing import Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Generic
 
 import numpy as np
 
-from blocksim.blocks.assembly import Array, Assembly, displacement
+from blocksim.blocks.assembly import Array, Assembly, Blocks
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Quality, Settings, World, trusted
-from blocksim.simulation.looking import Looking
-from blocksim.simulation.onset import UNFOUND, Onset
-from blocksim.simulation.recorded import Recorded
-from blocksim.simulation.verdict import Evidence, Verdict
+from blocksim.simulation.onset import ROUNDING, UNFOUND
+from blocksim.simulation.recording import Recording
+from blocksim.simulation.simulated import Simulation
+from blocksim.simulation.verdict import Verdict
 
-ROUNDING = 1e-12
-"""What is smaller is nothing but rounding."""
+if TYPE_CHECKING:
+    from blocksim.blocks.space.assembly import SpatialAssembly
+
 MOVED = 2e-3
 QUIET, SOONEST = 5.0, 1.0
 LONGEST = 40.0
@@ -62,43 +62,8 @@ FAR = 0.02
 """Displacement from which it is not: an overlap seen first then may be of other joints."""
 
 
-Shown = TypeVar("Shown", bound=Recorded[Any], covariant=True)
-"""What is recorded: in the plane, or in space."""
-
-
-class Runs(Protocol[Shown]):
-    """What a moving run needs of a problem in an engine."""
-
-    @property
-    def settings(self) -> Settings:
-        """What the engine is run with."""
-        ...
-
-    @property
-    def look(self) -> Looking:
-        """The problem as it is looked at where blocks move."""
-        ...
-
-    @property
-    def length(self) -> str:
-        """What the unit of length is called."""
-        ...
-
-    def world(self) -> World:
-        """Blocks in the engine, at rest."""
-        ...
-
-    def finer(self, factor: int) -> Runs[Shown]:
-        """Return the same with more sweeps in each step of a moving run."""
-        ...
-
-    def record(self, times: Sequence[float], poses: Sequence[Array], quality: Quality) -> Shown:
-        """Return frames as a recording."""
-        ...
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Motion(Generic[Shown]):
+class Motion(Generic[Blocks]):
     """Outcome of a moving run.
 
     Parameters
@@ -108,13 +73,13 @@ class Motion(Generic[Shown]):
         The evidence in words.
     overlap : float
         Deepest overlap of blocks, as a share of the motion of their joints.
-    recording : Recording or SpatialRecording
+    recording : Recording
     """
 
     verdict: Verdict
     reason: str
     overlap: float
-    recording: Shown
+    recording: Recording[Blocks]
 
     @property
     def mechanism(self) -> Array:
@@ -124,19 +89,19 @@ class Motion(Generic[Shown]):
 
 
 def moving_run(
-    simulation: Runs[Shown],
+    simulation: Simulation[Blocks],
     held: World,
     repeat: Callable[[World], None],
     *,
     rests: bool = False,
     until: float | None = None,
     progress: Progress = silent,
-) -> Motion[Shown]:
+) -> Motion[Blocks]:
     """Let an arch go that the onset test has held, and record it.
 
     Parameters
     ----------
-    simulation : Simulation or SpatialSimulation
+    simulation : Simulation
     held : World
         Built from it and at rest, impulses converged as far as they go.
     repeat : callable
@@ -147,10 +112,6 @@ def moving_run(
         Time to record for [sqrt(r/g)], or until what has collapsed lies still; by default
         the run stops as soon as its verdict is certain.
     progress : Progress, optional
-
-    Returns
-    -------
-    Motion
     """
     left = simulation.settings.repeats
     motion = _released(simulation, held, until, progress, rests=rests, last=not left)
@@ -165,48 +126,18 @@ def moving_run(
     return motion
 
 
-def released(
-    simulation: Runs[Shown],
-    world: World,
-    first: Onset,
-    until: float | None = None,
-    progress: Progress = silent,
-) -> Motion[Shown]:
-    """Let blocks go as the onset test left them in a world; see `moving_run`."""
-    rests = first.verdict is Verdict.STANDS and not first.may_slide
-    return moving_run(
-        simulation, world, first.repeat, rests=rests, until=until, progress=progress
-    )
-
-
-def both_tests(
-    first: Onset, release: Callable[[], Motion[Shown]], *, moving: bool
-) -> tuple[Verdict, Motion[Shown] | None, tuple[Evidence, ...]]:
-    """Let blocks go after the onset test if that is asked for, and tell what both tests show.
-
-    They are not let go where that test is undecided: unbalanced impulses would throw them.
-    """
-    verdict, evidence = first.verdict, (Evidence("onset test", first.reason),)
-    if not moving or verdict is Verdict.UNDECIDED:
-        return verdict, None, evidence
-    motion = release()
-    if motion.verdict is not verdict:
-        verdict = Verdict.UNDECIDED
-    return verdict, motion, (*evidence, Evidence("moving run", motion.reason))
-
-
 def _released(
-    simulation: Runs[Shown],
+    simulation: Simulation[Blocks],
     world: World,
     until: float | None,
     progress: Progress,
     *,
     rests: bool,
     last: bool,
-) -> Motion[Shown]:
+) -> Motion[Blocks]:
     """Record one release, as far as its blocks do not overlap, nor fall that should rest."""
     step, rest, look = simulation.settings.step, simulation.settings.rest, simulation.look
-    stride = max(1, round(FRAME / step))
+    stride, assembly = max(1, round(FRAME / step)), simulation.assembly
     taken = 0
     times, poses, moved = [0.0], [world.poses()], [0.0]
     end = (QUIET if rests else LONGEST) if until is None else until
@@ -218,7 +149,7 @@ def _released(
         taken += frames * stride
         times.append(taken * step)
         poses.append(world.poses())
-        moved.append(float(look.displacement(poses[-1] - poses[0])))
+        moved.append(float(assembly.displacement(poses[-1] - poses[0])))
         # What goes far at once is no longer the mechanism: the engine tells of its overlaps.
         told = moved[-1] > FAR and world.quality().penetration is not None
         if moved[-1] > simulation.settings.noise and moved[-2] < EARLY and not told:
@@ -226,7 +157,7 @@ def _released(
         if until is None and verdict_of(times, moved, rest) is not Verdict.UNDECIDED:
             break
         fallen = until is not None and moved[-1] > MOVED
-        if fallen and ((rests and not last) or hardly_move(poses, look.displacement)):
+        if fallen and ((rests and not last) or lie_still(assembly, poses)):
             break
         progress(min(1.0, times[-1] / end), "moving run")
     verdict = verdict_of(times, moved, rest) if overlap <= OVERLAP else Verdict.UNDECIDED
@@ -243,17 +174,12 @@ def _released(
     )
 
 
-def lie_still(assembly: Assembly, poses: list[Array]) -> bool:
+def lie_still(assembly: Assembly | SpatialAssembly, poses: list[Array]) -> bool:
     """Tell whether blocks have hardly moved for a while."""
-    return hardly_move(poses, partial(displacement, assembly=assembly))
-
-
-def hardly_move(poses: list[Array], displaced: Callable[[Array], Array]) -> bool:
-    """Tell the same, of blocks whose displacements are found from those of their poses."""
     if len(poses) <= AT_REST:
         return False
     last = np.array(poses[-1 - AT_REST :])
-    return float(displaced(last - last[-1]).max()) < UNSEEN
+    return float(assembly.displacement(last - last[-1]).max()) < UNSEEN
 
 
 def distrust(quality: Quality, settings: Settings, length: str) -> str:

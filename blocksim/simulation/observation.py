@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import cast
+from dataclasses import dataclass, replace
+from typing import Any, Generic, cast
 
 import numpy as np
 
-from blocksim.blocks.assembly import PLANAR, Array
+from blocksim.blocks.assembly import Array, Blocks
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.common.words import counted
 from blocksim.engines.base import Engine, TellsForces, World
-from blocksim.simulation.motion import Motion, both_tests, released
+from blocksim.simulation.motion import Motion, moving_run
 from blocksim.simulation.onset import Onset, onset
 from blocksim.simulation.recording import Recording
-from blocksim.simulation.repeating import COARSER, compared
+from blocksim.simulation.repeating import compared
 from blocksim.simulation.simulated import BY_RULE, Overrides, Reduced, Simulation, given_words
 from blocksim.simulation.verdict import Evidence, Verdict, aside, reason_of
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Held:
+class Held(Generic[Blocks]):
     """Blocks in an engine after the onset test: at rest, and ready to be let go once.
 
     Parameters
@@ -34,7 +34,7 @@ class Held:
         Joints of a reduction that turned out to move.
     """
 
-    simulation: Simulation
+    simulation: Simulation[Blocks]
     world: World
     onset: Onset
     splits: int = 0
@@ -48,23 +48,38 @@ class Held:
     def built(self) -> Array:
         """Poses where the blocks were built."""
         built = np.zeros_like(self.onset.mechanism)
-        built[:, :PLANAR] = self.simulation.assembly.built[:-1]
+        assembly = self.simulation.assembly
+        built[:, : assembly.dimensions] = assembly.centres / assembly.size
         return built
 
     def release(
         self, until: float | None = None, progress: Progress = silent
-    ) -> Motion[Recording]:
-        """Let the blocks go; see `released`."""
-        return released(self.simulation, self.world, self.onset, until, progress)
+    ) -> Motion[Blocks]:
+        """Let the blocks go as the onset test left them; see `moving_run`."""
+        first = self.onset
+        rests = first.verdict is Verdict.STANDS and not first.may_slide
+        return moving_run(
+            self.simulation,
+            self.world,
+            first.repeat,
+            rests=rests,
+            until=until,
+            progress=progress,
+        )
 
-    def record(self, until: float | None = None, progress: Progress = silent) -> Recording:
-        """Let the blocks go, and say how right it is where the engine follows an accuracy."""
+    def record(
+        self, until: float | None = None, progress: Progress = silent
+    ) -> Recording[Blocks]:
+        """Let the blocks go, and say how right it is."""
         recording = self.release(until, progress).recording
-        if not self.simulation.engine.follows_accuracy:
-            return recording
-        world = self.simulation.at_step(COARSER * self.simulation.settings.step).world()
-        self.onset.repeat(world)
-        return compared(recording, world)
+        simulation = replace(self.simulation, settings=recording.settings)
+
+        def world_at(step: float) -> World:
+            world = simulation.at_step(step).world()
+            self.onset.repeat(world)
+            return world
+
+        return compared(recording, world_at)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -82,8 +97,8 @@ class Observation:
     joints, joints_in_motion : tuple of ObservedJoint
         What joints do as a collapse starts, by the onset test, and a little later, in the
         moving run; closed where the blocks stand. Empty where gravity leans out of the
-        plane and they collapse: their states are those of motion in the plane. The second
-        is empty where there was no moving run, too.
+        plane and they collapse: their states are those of motion in the plane; and in space.
+        The second is empty where there was no moving run, too.
     rates : (blocks, 3 or 6) float or None
         Velocities in proportion to those with which a collapse starts, columns as poses.
     blocks, splits : int
@@ -93,7 +108,7 @@ class Observation:
     verdict: Verdict
     evidence: tuple[Evidence, ...]
     onset: Onset
-    motion: Motion[Recording] | None
+    motion: Motion[Any] | None
     joints: tuple[ObservedJoint, ...]
     joints_in_motion: tuple[ObservedJoint, ...]
     rates: Array | None
@@ -122,7 +137,7 @@ class Observation:
 
 
 def observe(
-    problem: Problem,
+    problem: Problem[Any],
     engine: str | Engine,
     *,
     moving: bool = True,
@@ -144,23 +159,19 @@ def observe(
     reduction : Reduced, optional
         Simulate these blocks in place of all.
     progress : Progress, optional
-
-    Returns
-    -------
-    Observation
     """
     held = hold(problem, engine, settings=settings, reduction=reduction, progress=progress)
     return conclude(held, moving=moving, progress=progress)
 
 
 def hold(
-    problem: Problem,
+    problem: Problem[Any],
     engine: str | Engine,
     *,
     settings: Overrides = BY_RULE,
     reduction: Reduced | None = None,
     progress: Progress = silent,
-) -> Held:
+) -> Held[Any]:
     """Do the first part: put the problem into the engine, and the onset test.
 
     With a reduction that is done again until no joint would move of those taken not to,
@@ -168,28 +179,12 @@ def hold(
     """
     splits = 0
     while True:
-        simulation = Simulation.of(problem, engine, settings=settings, reduction=reduction)
+        simulation = Simulation[Any].of(problem, engine, settings=settings, reduction=reduction)
         world = simulation.world()
-        first = onset(
-            world,
-            simulation.engine,
-            simulation.taken,
-            simulation.settings,
-            progress,
-            asked=reduction.asked(simulation.taken) if reduction else None,
-            rougher=simulation.rougher,
-            forces=reduction.forces if reduction else None,
-        )
+        first = onset(world, simulation, progress)
         if reduction and not first.too_far:
             resultants = cast("TellsForces", world).resultants()
-            allowed = simulation.settings.still
-            better = reduction.mended(
-                first,
-                resultants,
-                simulation.taken,
-                allowed,
-                takes_forces=simulation.engine.takes_forces,
-            )
+            better = reduction.revised(first, resultants, simulation)
             if better is not reduction:
                 splits = splits + len(better.kept) - len(reduction.kept) if better else 0
                 reduction = better
@@ -197,20 +192,24 @@ def hold(
         return Held(simulation=simulation, world=world, onset=first, splits=splits)
 
 
-def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Observation:
+def conclude(held: Held[Any], *, moving: bool, progress: Progress = silent) -> Observation:
     """Do the second part: the moving run if asked for, and what all of it shows."""
     simulation, first = held.simulation, held.onset
-    verdict, motion, evidence = both_tests(
-        first, lambda: held.release(progress=progress), moving=moving
-    )
+    verdict, motion = first.verdict, None
+    evidence: tuple[Evidence, ...] = (Evidence("onset test", first.reason),)
+    if moving and verdict is not Verdict.UNDECIDED:
+        motion = held.release(progress=progress)
+        evidence += (Evidence("moving run", motion.reason),)
+        if motion.verdict is not verdict:
+            verdict = Verdict.UNDECIDED
     evidence += _asides(held, motion)
     evidence += aside("settings", given_words(simulation.given))
-    joints = closed_joints(simulation.assembly.joint_angles)
+    in_space, planar = simulation.problem.in_space, simulation.problem.is_planar
+    joints = () if in_space else closed_joints(simulation.assembly.joint_angles)
     in_motion = joints if motion else ()
     rates = None
     if verdict is Verdict.COLLAPSES:
         rates = first.mechanism - held.built
-        planar = simulation.problem.is_planar
         joints = classify(simulation.assembly, first.mechanism) if planar else ()
         seen = planar and motion
         in_motion = classify(simulation.assembly, motion.mechanism) if motion and seen else ()
@@ -227,7 +226,7 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Observ
     )
 
 
-def _asides(held: Held, motion: Motion[Recording] | None) -> tuple[Evidence, ...]:
+def _asides(held: Held[Any], motion: Motion[Any] | None) -> tuple[Evidence, ...]:
     """Tell what else there is to know of an observation."""
     simulation = held.simulation
     said: list[Evidence] = []
@@ -235,13 +234,13 @@ def _asides(held: Held, motion: Motion[Recording] | None) -> tuple[Evidence, ...
         most = len(simulation.assembly.blocks)
         words = reduced_words(simulation.reduction.by, simulation.blocks, most, held.splits)
         said.append(Evidence("reduction", words))
-    if motion and not simulation.problem.is_planar:
+    if motion and not (simulation.problem.in_space or simulation.problem.is_planar):
         way = f"{motion.recording.beyond_plane[-1]:.1e} {simulation.length}"
         said.append(Evidence("moving run out of plane", f"moved {way} out of its plane"))
     if motion and simulation.unsure:
         said.append(Evidence("settings", simulation.unsure))
     if simulation.rougher is not None:
-        most = simulation.engine.most_friction
+        most = simulation.most_friction
         words = f"{simulation.engine.name} took {most:g} as friction"
         said.append(Evidence("friction", words))
     return tuple(said)

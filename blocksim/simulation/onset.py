@@ -48,15 +48,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import cast
+from typing import Any, cast
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.progress import Progress, silent
 from blocksim.common.words import counted
-from blocksim.engines.base import Engine, Settings, TakesForces, World
-from blocksim.simulation.looking import STICKS, Looking, looking_at
+from blocksim.engines.base import Settings, TakesForces, World
+from blocksim.simulation.looking import STICKS, Looking
+from blocksim.simulation.simulated import Simulation
 from blocksim.simulation.verdict import Verdict
 
 ROUNDING = 1e-12
@@ -143,61 +143,38 @@ class Onset:
                 return f"contact forces have not converged: {size}"
 
 
-def onset(
-    world: World,
-    engine: Engine,
-    problem: Problem | SpatialProblem,
-    settings: Settings,
-    progress: Progress = silent,
-    *,
-    asked: Problem | SpatialProblem | None = None,
-    rougher: Problem | SpatialProblem | None = None,
-    forces: Array | None = None,
-) -> Onset:
+def onset(world: World, simulation: Simulation[Any], progress: Progress = silent) -> Onset:
     """Run the onset test on a world whose blocks are at rest where they were built.
 
     Parameters
     ----------
     world : World
-    engine : Engine
-        Whose world it is.
-    problem : Problem
-        The blocks of the world, with the friction the engine takes.
-    settings : Settings
-        What counts as at rest, and the most sweeps to spend.
+    simulation : Simulation
+        Whose world it is, with what counts as at rest, and the most sweeps to spend.
     progress : Progress, optional
-    asked : Problem, optional
-        Whose forces the world takes, where the engine knows other blocks than those.
-    rougher : Problem, optional
-        The problem with the friction asked for, where the engine takes less.
-    forces : (joints, 2, 2) float, optional
-        To begin with; by default none.
 
     Returns
     -------
     Onset
         The world keeps its impulses and can be released from there.
     """
-    look = looking_at(problem, asked)
+    engine, settings, reduction = simulation.engine, simulation.settings, simulation.reduction
+    problem, built = simulation.taken, world.poses()
+    look = Looking(problem, reduction.asked(problem) if reduction else None)
     if look.far > settings.farthest:
-        return Onset(
-            verdict=Verdict.UNDECIDED,
-            acceleration=math.nan,
-            mechanism=world.poses(),
-            sweeps=0,
-            too_far=True,
+        seen = Onset(
+            verdict=Verdict.UNDECIDED, acceleration=math.nan, mechanism=built, sweeps=0
         )
-    allowed, built = settings.hold_sweeps, world.poses()
+        return replace(seen, too_far=True)
+    allowed, begun = settings.hold_sweeps, reduction.forces if reduction else None
     # Nothing is known of the far voussoirs before impulses have crossed the assembly.
     first = min(max(FIRST_SWEEPS, len(problem.assembly.blocks) ** 2), allowed)
     total, sweeps = 0, first
-    begun = forces
     if begun is not None:
         cast("TakesForces", world).begin(begun)
     may_rest = may_slide = False
-    helped = begun is not None or not (
-        engine.takes_forces and look.asks and settings.unaided is not None
-    )
+    takes = engine.takes_forces and look.asks and settings.unaided is not None
+    helped = begun is not None or not takes
     # Without bound on friction even an engine that looks for rest can miss it: forces may be
     # wedged, a thousand times their pressures.
     unasked = look.asks and not (engine.finds_rest and look.is_bounded(engine))
@@ -205,13 +182,7 @@ def onset(
         accelerations = world.hold(sweeps)
         total += sweeps
         seen = _seen(world, look, settings, built, accelerations, total)
-        falls = seen.verdict is Verdict.COLLAPSES
-        late = total > LATE * allowed
-        slides = (
-            unasked
-            and (falls or (late and look.overlap(seen.mechanism) < NEARLY))
-            and look.slip(seen.mechanism) > look.slips
-        )
+        slides = unasked and _slides(look, seen, late=total > LATE * allowed)
         slow = not helped and total >= (settings.unaided or 0)
         decided = seen.verdict is not Verdict.UNDECIDED
         if slides or (slow and not decided):
@@ -223,15 +194,28 @@ def onset(
                 cast("TakesForces", world).begin(forces)
                 sweeps, begun, may_slide = first, forces, slides
                 continue
-        seen = replace(seen, forces=begun, may_slide=may_slide)
-        if falls and may_rest:
-            return replace(seen, verdict=Verdict.UNDECIDED, may_rest=True)
-        if falls and rougher is not None and _may_hold(rougher, seen.mechanism):
-            return replace(seen, verdict=Verdict.UNDECIDED, lacks_friction=True)
-        if seen.verdict is not Verdict.UNDECIDED or total >= allowed:
-            return seen
+        if decided or total >= allowed:
+            seen = replace(seen, forces=begun, may_slide=may_slide)
+            return _judged(seen, may_rest, simulation.rougher)
         progress(total / allowed, "onset test")
         sweeps = min(int(total * (GROWTH - 1)), allowed - total)
+
+
+def _slides(look: Looking, seen: Onset, *, late: bool) -> bool:
+    """Tell whether blocks fall, or soon will, by joints that slide."""
+    falls = seen.verdict is Verdict.COLLAPSES
+    falls = falls or (late and look.overlap(seen.mechanism) < NEARLY)
+    return falls and look.slip(seen.mechanism) > look.slips
+
+
+def _judged(seen: Onset, may_rest: bool, rougher: Problem[Any] | None) -> Onset:
+    """Return what was seen, undecided where it falls and may rest all the same."""
+    if seen.verdict is Verdict.COLLAPSES:
+        if may_rest:
+            return replace(seen, verdict=Verdict.UNDECIDED, may_rest=True)
+        if rougher is not None and _may_hold(rougher, seen.mechanism):
+            return replace(seen, verdict=Verdict.UNDECIDED, lacks_friction=True)
+    return seen
 
 
 def _seen(
@@ -243,7 +227,7 @@ def _seen(
     sweeps: int,
 ) -> Onset:
     """Read the accelerations that a number of sweeps have led to."""
-    largest = float(look.displacement(accelerations))
+    largest = float(look.assembly.displacement(accelerations))
     mechanism = built + accelerations * (PROBE / largest if largest > 0 else 0.0)
     verdict = Verdict.UNDECIDED
     if look.trusts(world, settings, largest):
@@ -256,9 +240,9 @@ def _seen(
     return Onset(verdict=verdict, acceleration=largest, mechanism=mechanism, sweeps=sweeps)
 
 
-def _may_hold(problem: Problem | SpatialProblem, mechanism: Array) -> bool:
+def _may_hold(problem: Problem[Any], mechanism: Array) -> bool:
     """Tell whether blocks may rest by friction that the engine did not take."""
-    look = looking_at(problem)
+    look = Looking(problem)
     if look.slip(mechanism) <= STICKS:
         return False
     return not look.asks or look.equilibrium()[0]

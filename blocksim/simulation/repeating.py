@@ -8,13 +8,15 @@ more: of blocks that fall in a heap no step is fine enough.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import Array, displacement
+from blocksim.blocks.assembly import PLANAR, Array, Blocks
 from blocksim.engines.base import World
+from blocksim.engines.contact.geometry import Geometry
 from blocksim.simulation.recording import Recording
 
 KNOWN = 0.01
@@ -26,48 +28,105 @@ COARSER = 2
 """Steps in one of the other run."""
 
 
-def estimated(recording: Recording, poses: Sequence[Array], every: int = 1) -> Recording:
-    """Return a recording with the errors of its poses that another run shows.
+def estimated(
+    recording: Recording[Blocks], poses: Sequence[Array], frames: Sequence[int] | slice
+) -> Recording[Blocks]:
+    """Return a recording with the errors that another run shows.
 
     Parameters
     ----------
     recording : Recording
     poses : sequence of (blocks, 3 or 6) float
-        Of the other run, from the release on: one for `every` frames of the recording.
-    every : int
+        Of the other run, from the release on.
+    frames : sequence of int, or slice
+        Frames of the recording at the same times; those beyond the other run do not count.
     """
-    mine = recording.poses[::every][: len(poses)]
-    off = SAFE * displacement(np.array(poses[: len(mine)]) - mine, recording.assembly)
+    mine, times = (each[frames][: len(poses)] for each in (recording.poses, recording.times))
+    other = np.array(poses[: len(mine)])
+    displaced = recording.assembly.displacement
+    off = SAFE * displaced(other - mine)
     beyond = np.flatnonzero(off > KNOWN)
     count = int(beyond[0]) if len(beyond) else len(off)
+    gone = [_gone(times, displaced(each - each[0])) for each in (mine, other)]
     quality = replace(
         recording.quality,
+        penetration=_deepest(recording),
         error=float(off[:count].max()),
-        known=float(recording.times[::every][count - 1]) if len(beyond) else None,
+        late=SAFE * abs(gone[0] - gone[1]) if all(gone) else None,
+        known=float(times[count - 1]) if len(beyond) else None,
     )
     return replace(recording, quality=quality)
 
 
-def compared(recording: Recording, world: World) -> Recording:
+def _gone(times: Array, moved: Array) -> float:
+    """Return when blocks have first gone by `KNOWN`; 0 if never."""
+    at = int((moved > KNOWN).argmax())
+    before, after = moved[at - 1], moved[at]
+    back = (after - KNOWN) / (after - before) if at else 0.0
+    return float(times[at] - back * (times[at] - times[at - 1])) if at else 0.0
+
+
+def _deepest(recording: Recording[Any]) -> float | None:
+    """Return the deepest overlap that the engine tells of, or that joints have in the plane."""
+    told = recording.quality.penetration
+    if recording.problem.in_space:
+        return told
+    geometry, deepest = Geometry(recording.assembly), told or 0.0
+    for poses in recording.poses[..., :PLANAR]:
+        touch, holds = geometry.touch(poses)
+        deepest = max(deepest, -float(touch.gap[holds].min(initial=0.0)))
+    return deepest
+
+
+def compared(
+    recording: Recording[Blocks], world_at: Callable[[float], World]
+) -> Recording[Blocks]:
     """Return a recording with the errors that a run at `COARSER` steps shows.
+
+    Where these pass `KNOWN` blocks are let go at half the step, too. If that agrees, it is
+    what is returned.
 
     Parameters
     ----------
     recording : Recording
-        Of frames at equal times.
-    world : World
-        Of the same blocks, at rest, whose steps are that long.
+    world_at : callable
+        Gives the same blocks, at rest, in an engine whose steps are so long.
     """
     if len(recording.times) < 2:
         return recording
+    step = recording.settings.step
+    poses, frames, _ = _again(recording, world_at, COARSER * step)
+    found = estimated(recording, poses, frames)
+    if found.quality.known is None:
+        return found
+    poses, frames, world = _again(recording, world_at, step / COARSER)
+    if len(poses) < len(recording.times):
+        return found
+    finer = replace(
+        recording,
+        settings=replace(recording.settings, step=step / COARSER),
+        poses=np.array(poses),
+        quality=world.quality(),
+    )
+    # They may part at the last frame.
+    agreed = estimated(finer, list(recording.poses), frames)
+    return agreed if agreed.quality.known is None else found
+
+
+def _again(
+    recording: Recording[Any], world_at: Callable[[float], World], step: float
+) -> tuple[list[Array], Sequence[int], World]:
+    """Let blocks go in other steps, as long as they go as recorded: poses, and frames."""
+    displaced = recording.assembly.displacement
+    counts = recording.times / step
     # Frames may be an odd number of steps apart.
-    steps = round(float(recording.times[1]) / recording.settings.step)
-    every = 1 if steps % COARSER == 0 else COARSER
-    poses = [recording.poses[0]]
-    for frame in recording.poses[every::every]:
-        world.advance(steps * every // COARSER)
+    frames = np.flatnonzero(np.abs(counts - np.rint(counts)) < 1 / 4).tolist()
+    world, poses, taken = world_at(step), [recording.poses[0]], 0
+    for frame in frames[1:]:
+        world.advance(round(counts[frame]) - taken)
+        taken = round(counts[frame])
         poses.append(world.poses())
         # What comes after that tells no more.
-        if SAFE * displacement(poses[-1] - frame, recording.assembly) > KNOWN:
+        if SAFE * displaced(poses[-1] - recording.poses[frame]) > KNOWN:
             break
-    return estimated(recording, poses, every)
+    return poses, frames, world

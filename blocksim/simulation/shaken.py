@@ -3,10 +3,12 @@
 - *stands*: they lie still after the shaking, and every joint still is one: its faces lie
   over each other, nearly parallel, and touch;
 - *collapses*: they lie still and a joint is none any more, or a block has sunk by `SUNK`;
-- *undecided*: they still move when the time is over, or end otherwise at half the step.
+- *undecided*: they still move when the time is over, or end otherwise at half the step, or
+  fall though forces of equilibrium exist at any time.
 
-Blocks rock: what a joint opens it closes again, with an impact. No restitution is put in; what
-an impact leaves is what contact and friction leave. The first impact and the largest
+Blocks that begin in motion are the same question, on ground at rest. Blocks rock: what a joint
+opens it closes again, with an impact. Without restitution what an impact leaves is what contact
+and friction leave. The first impact and the largest
 rotation are read from the recorded poses.
 """
 
@@ -14,14 +16,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
+from blocksim.blocks.acting import Load
 from blocksim.blocks.assembly import PLANAR, Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
-from blocksim.engines.base import Engine, trusted
+from blocksim.engines.base import Engine, TakesVelocities, trusted
 from blocksim.engines.contact.geometry import Geometry, turns_of
+from blocksim.limit import equilibrium
 from blocksim.simulation.motion import FRAME, distrust, lie_still
 from blocksim.simulation.observation import hold
 from blocksim.simulation.recording import Recording
@@ -35,6 +40,7 @@ LONGEST = 200.0
 """Time after the shaking at which blocks that still move are given up [sqrt(size/g)]."""
 APART = 0.01
 """Gap across a joint from which its blocks do not touch [size]."""
+MAY_REST = "they can rest all the same: forces of equilibrium exist at any time"
 TURNED, SHUT = 1e-4, 1e-7
 """Rotation by which a joint has opened, and at which it has closed again [rad]."""
 
@@ -108,7 +114,7 @@ def shake(
     Parameters
     ----------
     problem : Problem
-        With `shaking`.
+        With `shaking` or `velocities`.
     engine : str or Engine
         One that `shakes`.
     until : float, optional
@@ -120,10 +126,6 @@ def shake(
     settings : mapping of str to float
         Given instead of what the engine's rule says.
     progress : Progress, optional
-
-    Returns
-    -------
-    Shaken
     """
     step = Simulation.of(problem, engine, settings=settings).settings.step
     stride = max(1, round(FRAME / step))
@@ -145,7 +147,25 @@ def shake(
         seen, differs = _beside(usual, at(COARSER))
         if differs:
             seen, _ = _beside(at(1 / COARSER), usual)
+    if seen.verdict is Verdict.COLLAPSES and may_rest(problem):
+        seen = replace(seen, verdict=Verdict.UNDECIDED, reason=f"{seen.reason}; {MAY_REST}")
     return replace(seen, reason=seen.reason + given_words(settings))
+
+
+def may_rest(problem: Problem) -> bool:
+    """Tell whether forces of equilibrium exist at any time while the ground shakes sideways.
+
+    They do if they exist at both ends of its acceleration: each mean of two such sets of forces
+    lies within friction, too, and balances what lies between.
+    """
+    still, blocks = replace(problem, shaking=None), tuple(range(len(problem.assembly.blocks)))
+    shaking = problem.shaking
+    known = shaking is not None and not shaking.is_vertical and not len(problem.velocities)
+    if shaking is None or not known or not still.has_statics:
+        return False
+    pushes = (np.array([-each, 0.0]) for each in shaking.across)
+    loads = (Load(force=push, blocks=blocks, per_weight=True) for push in pushes)
+    return all(equilibrium(replace(still, dead=(*still.dead, load))).exists for load in loads)
 
 
 def _once(
@@ -159,11 +179,13 @@ def _once(
     progress: Progress,
 ) -> Shaken:
     """Shake blocks once, with a frame every so many steps."""
-    assert problem.shaking is not None  # noqa: S101
     held = hold(problem, engine, settings=settings, progress=progress)
     simulation, world = held.simulation, held.world
     assembly, step = simulation.assembly, simulation.settings.step
-    shaken = problem.shaking.duration / problem.seconds
+    shaken = problem.shaking.duration / problem.seconds if problem.shaking else 0.0
+    if problem.is_moving and len(problem.velocities):
+        per = np.array([assembly.size, assembly.size, 1.0])
+        cast("TakesVelocities", world).push(problem.velocities / per * problem.seconds)
     end = shaken + LONGEST if until is None else until
     times, poses, taken = [0.0], [world.poses()], 0
     while times[-1] < end - step / 2:
@@ -176,7 +198,7 @@ def _once(
         if not whole and _sunk(poses) > SUNK:
             break
         progress(min(1.0, times[-1] / end), "shaking")
-    # The ground does work: what energy there is says nothing of the engine.
+    # What the ground does and blocks begin with is no gain of the engine.
     quality = replace(world.quality(), gain=None)
     recording = simulation.record(times, poses, quality)
     verdict, what = outcome(recording)
@@ -197,7 +219,7 @@ def _beside(fine: Shaken, coarse: Shaken) -> tuple[Shaken, bool]:
     """Return the finer of two answers with what the other tells, and whether they differ."""
     one, two = fine.recording, coarse.recording
     every = max(1, round(float(two.times[1] / one.times[1])))
-    recording = estimated(one, list(two.poses), every)
+    recording = estimated(one, list(two.poses), slice(None, None, every))
     off = SAFE * abs(fine.rocking.rotation - coarse.rocking.rotation)
     hit, other = fine.rocking.impact, coarse.rocking.impact
     late = None if hit is None or other is None else SAFE * abs(hit - other)
@@ -235,12 +257,16 @@ def outcome(recording: Recording) -> tuple[Verdict, str]:
 
 def rocking_of(recording: Recording) -> Rocking:
     """Read from the poses how far blocks turned, and when a joint first closed again."""
-    turned = recording.poses[:, :, 2] - recording.poses[0, :, 2]
+    in_space = recording.problem.in_space
+    if in_space:
+        # From where blocks were built, by rotation vectors.
+        turned = np.linalg.norm(recording.poses[:, :, 3:], axis=2)
+    else:
+        turned = recording.poses[:, :, 2] - recording.poses[0, :, 2]
     frame, block = np.unravel_index(int(np.abs(turned).argmax()), turned.shape)
+    impact = None if in_space else _first_impact(recording.assembly, recording.times, turned)
     return Rocking(
-        rotation=_peak(np.abs(turned[:, block]), int(frame)),
-        block=int(block),
-        impact=_first_impact(recording.assembly, recording.times, turned),
+        rotation=_peak(np.abs(turned[:, block]), int(frame)), block=int(block), impact=impact
     )
 
 

@@ -22,8 +22,9 @@ class Evidence:
     Parameters
     ----------
     test : str
-        `onset test`, `moving run`, `limit analysis`, `closed form`, `search`, `shaking`; and
-        what else there is to know of it: `method`, `settings`, `reduction`, `note`.
+        `onset test`, `moving run`, `limit analysis`, `closed form`, `search`, `shaking`,
+        `motion`; and what else there is to know of it: `method`, `settings`, `reduction`,
+        `note`.
     found : str
         In words, in one line.
     """

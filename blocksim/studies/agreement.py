@@ -23,10 +23,7 @@ def answered(
     workers: int,
     progress: Progress,
 ) -> list[Found]:
-    """Do jobs, each with a name to report it by; return what came of each, in their order.
-
-    Processes do them; one worker is this process.
-    """
+    """Do named jobs by so many processes; return what came of each, in their order."""
     if workers == 1:
         found: list[Found] = []
         for done, (name, job) in enumerate(jobs):
@@ -46,17 +43,10 @@ class Validation:
 
     Parameters
     ----------
-    scenario : str
-    engine : str
-    half_angle, mu : float
-    voussoirs : int
-    weight : str
     modes_published : tuple of Mode
         Of the continuous arch: several on a line of the map.
     modes_theory : tuple of Mode
         The same by theory: all that coincide there, so that none of them is wrong.
-    eta_published, eta_limit : float or None
-    mode_limit : Mode or None
     eta_low, eta_high : float or None
         The bracket.
     error : float or None
@@ -74,7 +64,6 @@ class Validation:
         What disagrees; empty where nothing does.
     note : str
         Why, or what to keep in mind.
-    wall_s : float
     title, source : str
         Of the scenario.
     recording : Recording or None
@@ -112,15 +101,7 @@ class Validation:
 
 @dataclass(frozen=True, kw_only=True)
 class Unasked:
-    """Scenarios that an engine was not asked about.
-
-    Parameters
-    ----------
-    engine : str
-    scenarios : tuple of str
-        Their names.
-    why : str
-    """
+    """Scenarios, by name, that an engine was not asked about."""
 
     engine: str
     scenarios: tuple[str, ...]
@@ -144,18 +125,7 @@ def agree(one: Mode | None, other: Mode | None, coincident: Collection[Mode]) ->
 
 
 def disagreements(rows: Sequence[Validation]) -> list[str]:
-    """List where engines differ on the same scenario, each with its likely cause.
-
-    Parameters
-    ----------
-    rows : sequence of Validation
-
-    Returns
-    -------
-    list of str
-        Sentences; verdicts, brackets that exclude each other and modes count, but not
-        modes that coincide where the arch lies on the map.
-    """
+    """List where engines differ on a scenario (not in modes that coincide), with the cause."""
     found: list[str] = []
     for name in dict.fromkeys(row.scenario for row in rows):
         first, *others = (row for row in rows if row.scenario == name)

@@ -38,16 +38,7 @@ Cost = Literal["time", "work"]
 
 @dataclass(frozen=True, kw_only=True)
 class ChartArch:
-    """An arch of the chart.
-
-    Parameters
-    ----------
-    name : str
-    half_angle : float
-        alpha [rad].
-    mu : float
-    voussoirs : int
-    """
+    """An arch of the chart, by its half-angle [rad]."""
 
     name: str
     half_angle: float
@@ -61,7 +52,6 @@ class Point:
 
     Parameters
     ----------
-    case, method : str
     knob : str
         What was set, of `REFINEMENTS`.
     value : float
@@ -83,8 +73,8 @@ class Point:
     knob: str
     value: float
     error: float
-    low: float | None
-    high: float | None
+    low: float | None = None
+    high: float | None = None
     undecided: int
     work: float
     processor_s: tuple[float, ...]
@@ -133,23 +123,7 @@ def measure(
     quick: bool = False,
     progress: Progress = silent,
 ) -> list[Point]:
-    """Bracket arches by every method, with settings from coarse to fine.
-
-    Parameters
-    ----------
-    chosen : sequence of ChartArch
-    methods : iterable of str, optional
-        By default limit analysis and the engines installed here.
-    knobs : iterable of str
-        Of `REFINEMENTS`.
-    quick : bool
-        With fewer settings, each once.
-    progress : Progress, optional
-
-    Returns
-    -------
-    list of Point
-    """
+    """Bracket arches by methods (those installed), with settings from coarse to fine."""
     names = tuple(
         methods or ("limit", *(name for name, engine in ENGINES.items() if not engine.missing))
     )
@@ -190,13 +164,6 @@ def on_front(points: Sequence[Point], cost: Cost = "time") -> set[Point]:
     for point in points:
         peers.setdefault((point.case, point.against), []).append(point)
     return {best for group in peers.values() for best in front(group, cost)}
-
-
-def gain(points: Sequence[Point], method: str, over: str) -> float:
-    """Finest error of one method over that of another in the same time or less."""
-    finest = min((p for p in points if p.method == over), key=lambda p: p.error)
-    affordable = [p.error for p in points if p.method == method and p.time <= finest.time]
-    return finest.error / min(affordable, default=math.inf)
 
 
 class _Found(NamedTuple):

@@ -35,22 +35,13 @@ TABLE_1 = {
     "B": (2.0, 2.690297881776622, 2.774176793356034, 0.03200476409857036,
           0.0, 0.1760126676508405),
 }  # fmt: skip
-"""eta, mu, alpha, h, beta_r, beta_s, as printed."""
+"""As printed."""
+SYMBOLS = ("eta", "mu", "alpha", "h", "beta_r", "beta_s")
 
 
 @dataclass(frozen=True, kw_only=True)
 class PaperArch:
-    """One arch of Figs 13-25.
-
-    Parameters
-    ----------
-    half_angle, mu : float
-        alpha [rad], friction coefficient.
-    mode : Mode
-        The mode that is drawn, where several coincide.
-    critical : Critical
-        The arch at its least thickness.
-    """
+    """One arch of Figs 13-25 at its least thickness [rad], in the mode that is drawn."""
 
     half_angle: float
     mu: float
@@ -60,14 +51,7 @@ class PaperArch:
 
 @dataclass(frozen=True, kw_only=True)
 class Printed:
-    """A number of the paper.
-
-    Parameters
-    ----------
-    name : str
-    value, printed : float
-        As computed, and as printed.
-    """
+    """A number of the paper, as computed and as printed."""
 
     name: str
     value: float
@@ -84,10 +68,15 @@ def numbers() -> tuple[Printed, ...]:
     found: dict[str, tuple[float, float]] = {}
     for name, published in TABLE_1.items():
         mark = landmarks()[name]
-        values = (mark.eta, mark.mu, mark.half_angle, mark.thrust, mark.beta_r, mark.beta_s)
-        for symbol, value, printed in zip(
-            ("eta", "mu", "alpha", "h", "beta_r", "beta_s"), values, published, strict=True
-        ):
+        values = (
+            mark.eta,
+            mark.mu,
+            mark.half_angle,
+            mark.thrust,
+            mark.beta_r,
+            mark.beta_s or 0.0,
+        )
+        for symbol, value, printed in zip(SYMBOLS, values, published, strict=True):
             found[f"Table 1 {symbol}_{name}"] = (value, printed)
     special = special_angles()
     found["beta_s-beta"] = (special.hinge, 1.129085087576187)

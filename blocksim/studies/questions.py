@@ -18,12 +18,11 @@ from blocksim.blocks.entries import ExpectEntry
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.engines import engine_named
-from blocksim.kinds.known import Known
+from blocksim.kinds.loading import Known
 from blocksim.simulation.verdict import Verdict
 
-"""How far inside and beyond the value expected each engine is asked, relative."""
 SHAKEN = 0.01
-"""The same on ground that shakes, for any engine."""
+"""How far inside and beyond the value expected any engine is asked where ground shakes."""
 NEAR = 1e-6
 """A value of limit analysis farther than this from the one expected is a miss, relative."""
 SLOWLY = 0.005
@@ -35,66 +34,20 @@ BEYOND = 1e-6
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Drawn:
-    """A structure as it falls, or stands.
-
-    Parameters
-    ----------
-    problem : Problem
-    rates : (blocks, 3) float or None
-        As of `Check.mechanism`; None where it stands.
-    states : tuple of JointState
-    method : str
-        By which it falls.
-    """
+    """A structure as it falls, by rates as of `Check.mechanism`, or stands, without."""
 
     problem: Problem
     rates: Array | None
     states: tuple[JointState, ...]
-    method: str
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StructureRow:
     """One question about a structure, answered by one method, against what is known.
 
-    Parameters
-    ----------
-    structure, title, source : str
-    blocks : int
-    mu : float
-    question : str
-        The parameter at which it changes from standing to falling, or `stands`.
-    unit : str
-    expected : float or None
-        The value known.
-    published : str
-        The same with the digits that were printed; empty where none were.
-    expected_verdict : Verdict or None
-        Where the question is whether it stands.
-    expected_hinges : tuple of int
-        Joints that open as it falls, from the left; empty where nothing is said.
-    method : str
-    value : float or None
-        By limit analysis. By an engine the centre of the bracket, of supports that spread.
-    error : float or None
-        `value` over `expected`, less 1; the difference where 0 is expected.
-    digits : bool or None
-        Whether `value` rounds to what was published; None where nothing was.
-    low, high : float or None
-        The values an engine was asked at.
-    at_low, at_high : Verdict or None
-        What it said there.
-    verdict : Verdict or None
-        Where the question is whether it stands.
-    hinges : tuple of int
-        Joints that open, just beyond the value.
-    miss : str
-        What disagrees; empty where nothing does.
-    note : str
-        Why, or what to keep in mind.
-    wall_s : float
-    drawn : Drawn or None
-        How it falls.
+    Fields are the columns of structures.csv, as docs/guide/formats.md has them. `value` is by
+    limit analysis, or the centre of the bracket of supports that spread; `error` is relative,
+    but the difference where 0 is expected; `drawn` is how it falls.
     """
 
     structure: str
@@ -293,5 +246,4 @@ def _drawn(seen: Check) -> Drawn:
         problem=seen.problem,
         rates=seen.mechanism if falls else None,
         states=tuple(joint.state for joint in seen.joints),
-        method=seen.method,
     )

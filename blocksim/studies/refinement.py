@@ -13,10 +13,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from blocksim.arch.circular import Arch
 from blocksim.ask.methods import METHODS
-from blocksim.blocks.assembly import displacement
 from blocksim.engines import ENGINES
 from blocksim.engines.base import trusted
 from blocksim.kinds.circular import CircularArch
@@ -31,26 +31,17 @@ TOL = 1e-3
 """Relative width of the brackets in which something else than their width is varied."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Refinement:
-    """Something that is set from coarse to fine.
+class Refinement(NamedTuple):
+    """Something that is set from coarse to fine, as in `Method.chart`.
 
-    Parameters
-    ----------
-    name : str
-        As in `Method.chart`.
-    words : str
-        What it is.
-    arches : int
-        On how many arches of the chart, the first ones, it is turned.
-    against : str
-        What errors are measured from: `limit` analysis of the same voussoirs, or `theory`.
+    It is turned on the first arches of the chart; errors are measured from `limit` analysis of
+    the same voussoirs, or from `theory`.
     """
 
     name: str
     words: str
     arches: int
-    against: str = "limit"
+    against: str
 
     @property
     def values(self) -> dict[str, tuple[float, ...]]:
@@ -63,34 +54,23 @@ class Refinement:
 
 
 REFINEMENTS = {
-    refinement.name: refinement
-    for refinement in (
-        Refinement(
-            name="tolerance",
-            words="onset test alone: relative width of the bracket",
-            arches=5,
+    name: Refinement(name, words, arches, against)
+    for name, words, arches, against in (
+        ("tolerance", "onset test alone: relative width of the bracket", 5, "limit"),
+        (
+            "step",
+            "moving run alone: time step [sqrt(r/g)], with the usual sweeps in it",
+            3,
+            "limit",
         ),
-        Refinement(
-            name="step",
-            words="moving run alone: time step [sqrt(r/g)], with the usual sweeps in it",
-            arches=3,
+        (
+            "sweeps",
+            "moving run alone: sweeps over the contacts in a step of usual length",
+            3,
+            "limit",
         ),
-        Refinement(
-            name="sweeps",
-            words="moving run alone: sweeps over the contacts in a step of usual length",
-            arches=3,
-        ),
-        Refinement(
-            name="hold_sweeps",
-            words="onset test alone, cut short: most sweeps it may spend",
-            arches=2,
-        ),
-        Refinement(
-            name="voussoirs",
-            words="number of voussoirs, at the finest tolerance",
-            arches=2,
-            against="theory",
-        ),
+        ("hold_sweeps", "onset test alone, cut short: most sweeps it may spend", 2, "limit"),
+        ("voussoirs", "number of voussoirs, at the finest tolerance", 2, "theory"),
     )
 }
 """By name."""
@@ -98,16 +78,7 @@ REFINEMENTS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """What an engine said of one arch, and what it cost.
-
-    Parameters
-    ----------
-    verdict : Verdict
-    acceleration : float
-        With which it starts [g]; nan where it was not held.
-    work : int
-        Contacts solved, times the sweeps over them.
-    """
+    """What an engine said of one arch: acceleration [g] or nan; contacts times sweeps."""
 
     verdict: Verdict
     acceleration: float
@@ -115,23 +86,7 @@ class Look:
 
 
 def look(arch: Arch, mu: float, method: str, knob: str, value: float) -> Look:
-    """Ask an engine whether an arch stands, with one setting given.
-
-    Parameters
-    ----------
-    arch : Arch
-    mu : float
-    method : str
-        An engine.
-    knob : str
-        Of `REFINEMENTS`.
-    value : float
-        Its setting; that of a tolerance or a number of voussoirs is not the engine's.
-
-    Returns
-    -------
-    Look
-    """
+    """Ask an engine whether an arch stands, with one setting of `REFINEMENTS` given."""
     if knob in {"step", "sweeps"}:
         given = {"step": STEP, "sweeps": ENGINES[method].usual_sweeps, knob: value}
         return let_go(
@@ -148,7 +103,6 @@ def let_go(simulation: Simulation, moved: float = MOVED, until: float = QUIET) -
 
     Parameters
     ----------
-    simulation : Simulation
     moved : float
         Displacement from which it counts as collapsing [size].
     until : float
@@ -168,7 +122,7 @@ def let_go(simulation: Simulation, moved: float = MOVED, until: float = QUIET) -
         world.advance(steps)
         taken += steps
         # What has become nan has moved, too.
-        if not displacement(world.poses() - built, simulation.assembly) <= moved:
+        if not simulation.assembly.displacement(world.poses() - built) <= moved:
             verdict = Verdict.COLLAPSES
     joints = len(simulation.assembly.joints)
     return Look(

@@ -11,7 +11,7 @@ from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import engine_named
 from blocksim.kinds.files import shipped_structures
-from blocksim.kinds.known import Known, load_known
+from blocksim.kinds.loading import Known, load_known
 from blocksim.studies.agreement import Unasked, answered
 from blocksim.studies.questions import StructureRow, answer
 from blocksim.studies.validate import usual
@@ -55,13 +55,11 @@ def validate_structures(
 
     Parameters
     ----------
-    chosen : sequence of Known
     engines : iterable of str, optional
         Those usual for structures, as far as they are installed, if left out.
         `unasked_structures` tells what each is not asked.
     workers : int
         Processes; 1 runs in this one.
-    progress : Progress, optional
 
     Returns
     -------

@@ -8,11 +8,10 @@ from dataclasses import replace
 
 from blocksim.arch import limit
 from blocksim.arch.answers import ArchBracket
+from blocksim.arch.circular import ETA_MAX
 from blocksim.arch.limit.mechanism import mechanism
-from blocksim.arch.modes import Mode
-from blocksim.arch.observed import observed_mode
+from blocksim.arch.modes import Mode, observed_mode
 from blocksim.ask.bracket import bracket
-from blocksim.ask.search import ETA_MAX
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import ENGINES, NAMES, engine_named, get_engine
 from blocksim.kinds.circular import CircularArch
@@ -71,13 +70,11 @@ def validate(
 
     Parameters
     ----------
-    chosen : sequence of Scenario
     engines : iterable of str, optional
         By default all that are `installed`. Scenarios whose gravity leans out of the
         plane are for those that see that; `unasked` tells what is left out.
     workers : int
         Processes; 1 runs in this one.
-    progress : Progress, optional
 
     Returns
     -------
@@ -113,8 +110,6 @@ def validate_one(scenario: Scenario, engine: str, tol: float | None = None) -> V
 
     Parameters
     ----------
-    scenario : Scenario
-    engine : str
     tol : float, optional
         Relative width of the bracket; by default what the engine says (`validated_to`).
     """

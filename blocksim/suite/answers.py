@@ -12,8 +12,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import LONGEST, MISSING, InputError, perhaps
 from blocksim.common.files import AnyPath, json_of, opened
-from blocksim.suite.poses import PLANAR, SPATIAL, Bodies
-from blocksim.suite.scene import Scene
+from blocksim.suite.scene import PLANAR, SPATIAL, Bodies, Scene
 
 FORMAT = "blocksim answers 1"
 LARGEST = 1 << 28
@@ -42,7 +41,6 @@ class Answer:
 
     Parameters
     ----------
-    scene : str
     verdict : {"stands", "falls", "open"} or None
         None where poses say it.
     poses : (frames, bodies, 3 or 7) float or None

@@ -13,10 +13,10 @@ import numpy as np
 
 from blocksim.ask.families import FAMILIES
 from blocksim.blocks.assembly import Array, Support
+from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.files import shipped_files, toml_of
-from blocksim.kinds import SOLID_KINDS
+from blocksim.kinds import KINDS
 from blocksim.kinds.files import structure_of
 from blocksim.suite.scene import BOUND, Scene, acting, bodies_of
 
@@ -73,35 +73,25 @@ class Family:
     @property
     def spatial(self) -> bool:
         """Whether its blocks lie in space."""
-        return self.structure.get("kind") in SOLID_KINDS
+        kind = str(self.structure.get("kind"))
+        return kind in KINDS and KINDS[kind].in_space
 
     @cached_property
-    def _built(self) -> Problem | SpatialProblem:
-        if self.spatial:
-            built = self._solid({})
-        else:
-            built = structure_of({"density": WEIGHT, **self.structure})
+    def _built(self) -> Problem[Any]:
+        said: dict[str, Any] = {"density": WEIGHT, **self.structure}
+        built = replace(structure_of(said), azimuth=math.radians(self.azimuth_deg))
         return built.tilted(math.radians(self.tilt_deg)) if self.tilt_deg else built
 
-    def _solid(self, changes: dict[str, float]) -> SpatialProblem:
-        said: dict[str, Any] = {**self.structure, **changes}
-        maker = SOLID_KINDS[said.pop("kind")](density=WEIGHT, **said)
-        return replace(maker.problem(), azimuth=math.radians(self.azimuth_deg))
-
-    def at(self, value: float) -> Problem | SpatialProblem:
+    def at(self, value: float) -> Problem[Any]:
         """Return the structure at a value of the parameter."""
         built = self._built
-        if isinstance(built, SpatialProblem):
-            if self.over == "tilt":
-                return built.tilted(math.radians(value))
-            if self.over == "mu":
-                return built.with_friction(value)
-            return self._solid({self.over: value})
         if self.over in FAMILIES:
             found = FAMILIES[self.over](built).at(value)
         else:
             found = built.but(**{self.over: value})
-        return found if self.foot is None else _footed(found, self.foot)
+        if self.foot is None or found.in_space:
+            return found
+        return _footed(found, self.foot)
 
     @property
     def questions(self) -> Iterator[Question]:
@@ -132,7 +122,7 @@ class Question:
         return self.family.group
 
     @cached_property
-    def problem(self) -> Problem | SpatialProblem:
+    def problem(self) -> Problem[Any]:
         """What is asked about."""
         below = self.stands == (self.family.stands == "low")
         share = self.level / 100 * (-1 if below else 1)
@@ -171,17 +161,10 @@ def _footed(problem: Problem, depth: float) -> Problem:
         ends = np.array([joint.inner, joint.outer])
         bearer = 1.0 if joint.before == -1 else -1.0
         out: Array = -bearer * depth * joint.normal
-        made.append(Support((np.concatenate([ends, ends[::-1] + out]),), support.name))
-    corners = tuple(
-        replace(each, polygons=tuple(_counter_clockwise(part) for part in each.polygons))
-        for each in made
-    )
-    return replace(problem, assembly=replace(assembly, supports=corners))
-
-
-def _counter_clockwise(polygon: Array) -> Array:
-    x, y = (np.roll(polygon, -1, axis=0) - polygon)[:2]
-    return polygon if x[0] * y[1] - x[1] * y[0] > 0 else polygon[::-1]
+        corners = np.concatenate([ends, ends[::-1] + out])
+        turned = corners if signed_area(corners) > 0 else corners[::-1]
+        made.append(Support((turned,), support.name))
+    return replace(problem, assembly=replace(assembly, supports=tuple(made)))
 
 
 @cache

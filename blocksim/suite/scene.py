@@ -1,17 +1,20 @@
-"""Scenes: bodies in the plane or in space as plain data, for engines of any language."""
+"""Scenes: bodies in the plane or in space as plain data, and their poses.
+
+They are for engines of any language.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.space.assembly import SolidBlock
-from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.reading.scenes import FORMAT
 
 BOUND = 0.05
@@ -94,15 +97,12 @@ class Scene:
 
     Parameters
     ----------
-    name, group : str
     level : float or None
         How far it is from the limit [%]; None where its motion is asked for.
     gravity : (2 or 3,) float
         [m/s^2]
     friction : float
         Coefficient between any two bodies.
-    bodies : tuple of Body
-    pushes : tuple of Push
     times : (frames,) float
         When poses are asked for [s]; the last is the scene's duration.
     bound : float
@@ -161,10 +161,13 @@ class Scene:
         }
 
 
-def bodies_of(problem: Problem | SpatialProblem) -> tuple[Body, ...]:
+def bodies_of(problem: Problem[Any]) -> tuple[Body, ...]:
     """Return supports and blocks of a problem in its plane, or in space."""
-    if isinstance(problem, SpatialProblem):
-        return tuple(_solid(each, fixed=fixed) for fixed, each in _solids(problem))
+    if problem.in_space:
+        return (
+            *(_solid(each, fixed=True) for each in problem.assembly.supports),
+            *(_solid(each, fixed=False) for each in problem.assembly.blocks),
+        )
     assembly = problem.assembly
     beds = tuple(
         Body(name=each.name, shapes=each.polygons, centre=np.zeros(2))
@@ -181,12 +184,6 @@ def bodies_of(problem: Problem | SpatialProblem) -> tuple[Body, ...]:
         )
         for each in assembly.blocks
     )
-
-
-def _solids(problem: SpatialProblem) -> Iterator[tuple[bool, SolidBlock]]:
-    """Give supports, then blocks, and whether they are fixed."""
-    yield from ((True, each) for each in problem.assembly.supports)
-    yield from ((False, each) for each in problem.assembly.blocks)
 
 
 def _solid(block: SolidBlock, *, fixed: bool) -> Body:
@@ -206,9 +203,9 @@ def _solid(block: SolidBlock, *, fixed: bool) -> Body:
     )
 
 
-def acting(problem: Problem | SpatialProblem) -> tuple[Array, tuple[Push, ...]]:
+def acting(problem: Problem[Any]) -> tuple[Array, tuple[Push, ...]]:
     """Return gravity [m/s^2], with body forces on all blocks, and pushes on single ones [N]."""
-    spatial = isinstance(problem, SpatialProblem)
+    spatial = problem.in_space
     blocks = problem.assembly.blocks
     gravity, pushes = problem.gravity[: 3 if spatial else 2].copy(), list[Push]()
     weights = (
@@ -227,3 +224,92 @@ def acting(problem: Problem | SpatialProblem) -> tuple[Array, tuple[Push, ...]]:
                 force = factor * weight * load.force
                 pushes.append(Push(body=blocks[index].name, force=force, point=point))
     return STANDARD_GRAVITY * gravity, tuple(pushes)
+
+
+PLANAR, SPATIAL = 3, 7
+"""Numbers of a pose: x, y and angle; x, y, z and a quaternion w, x, y, z."""
+NEARLY = 1e-6
+"""How far corners may be from their mirror images, in sizes of the mean body."""
+
+
+def turned(arms: Array, poses: Array) -> Array:
+    """Turn arms as poses say, (..., d) float for poses (..., 3 or 7)."""
+    if poses.shape[-1] == PLANAR:
+        cos, sin = np.cos(poses[..., 2]), np.sin(poses[..., 2])
+        x, y = arms[..., 0], arms[..., 1]
+        return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
+    quaternion = poses[..., 3:]
+    length = np.linalg.norm(quaternion, axis=-1, keepdims=True)
+    unit = quaternion / np.where(length > 0, length, 1.0)
+    real, axis = unit[..., :1], unit[..., 1:]
+    once = 2 * np.cross(axis, arms)
+    return arms + real * once + np.cross(axis, once)
+
+
+class Bodies:
+    """What moves in a scene, its corners as arrays."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene, moving = scene, scene.moving
+        corners = [np.concatenate(body.shapes) for body in moving]
+        self._owner = np.repeat(np.arange(len(moving)), [len(each) for each in corners])
+        self._centres = np.array([body.centre for body in moving])
+        self._arms = np.concatenate(corners) - self._centres[self._owner]
+        self._mass = np.array([body.mass for body in moving])
+
+    @cached_property
+    def start(self) -> Array:
+        """Poses at the start, (bodies, 3 or 7) float."""
+        still = [0.0] if self.scene.dimensions == 2 else [1.0, 0.0, 0.0, 0.0]
+        return np.column_stack([self._centres, np.tile(still, (len(self._centres), 1))])
+
+    def corners(self, poses: Array) -> Array:
+        """Return where all corners are, (..., corners, 2 or 3) float."""
+        of = poses[..., self._owner, :]
+        return of[..., : self.scene.dimensions] + turned(self._arms, of)
+
+    def ways(self, poses: Array) -> Array:
+        """Return how far each corner is from its start, (..., corners) float [m]."""
+        return np.linalg.norm(self.corners(poses) - self.corners(self.start), axis=-1)
+
+    def lifted(self, poses: Array) -> Array:
+        """Return the potential energy over all weights, (frames,) float [m]."""
+        scene, dimensions = self.scene, self.scene.dimensions
+        weight = self._mass[:, None] * scene.gravity
+        energy = -(poses[..., :dimensions] * weight).sum(axis=(-2, -1))
+        names = [body.name for body in scene.moving]
+        for push in scene.pushes:
+            on = names.index(push.body)
+            arm = push.point - self._centres[on]
+            at = poses[:, on, :dimensions] + turned(arm, poses[:, on])
+            energy = energy - at @ push.force
+        return energy / (self._mass.sum() * np.linalg.norm(scene.gravity))
+
+    @cached_property
+    def _image(self) -> NDArray[np.int64] | None:
+        """The corner that is each one's mirror image across a vertical plane; None if none."""
+        scene = self.scene
+        if scene.pushes or scene.gravity[0] != 0:
+            return None
+        start = self.corners(self.start)
+        away = np.linalg.norm(self.mirrored(start)[:, None] - start, axis=-1)
+        nearest = away.argmin(axis=1)
+        near = away[np.arange(len(start)), nearest] < NEARLY * scene.size
+        return nearest if near.all() else None
+
+    def mirrored(self, corners: Array) -> Array:
+        """Mirror corners across the plane x = that of the common centre of mass."""
+        middle = self._mass @ self._centres[:, 0] / self._mass.sum()
+        flip = np.ones(self.scene.dimensions)
+        flip[0] = -1
+        return corners * flip + 2 * middle * (flip < 0)
+
+    def asymmetry(self, poses: Array) -> float | None:
+        """Return how far corners are from the mirror images of others at the end [m].
+
+        None where the scene is no mirror image of itself.
+        """
+        if self._image is None:
+            return None
+        at = self.corners(poses[-1])
+        return float(np.linalg.norm(self.mirrored(at) - at[self._image], axis=-1).max())

@@ -15,7 +15,7 @@ import numpy as np
 
 from blocksim.suite.answers import Answer, Head
 from blocksim.suite.families import LEVELS, Question
-from blocksim.suite.poses import Bodies
+from blocksim.suite.scene import Bodies
 from blocksim.suite.timed import Motion
 
 Counted = Literal["right", "false", "open"]
@@ -30,7 +30,6 @@ class Row:
 
     Parameters
     ----------
-    scene, group : str
     level : float or None
         [%]; None where motion is asked for.
     answer : {"right", "false", "open"}
@@ -46,7 +45,6 @@ class Row:
     error : float or None
         Of motion: largest distance of a corner from where it should be, over the largest way
         of one.
-    seconds : float
     """
 
     scene: str
@@ -169,8 +167,6 @@ def scored(
 
     Parameters
     ----------
-    head : Head
-    answers : mapping of str to Answer
     asked : mapping of str to Question or Motion
         All scenes.
     """

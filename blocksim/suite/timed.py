@@ -87,12 +87,11 @@ def _box(
 
 def _motion(
     name: str, group: str, bodies: tuple[Body, ...], path: Path, duration: float,
-    friction: float, gravity: Array = DOWN, start: float = 0.0,
+    friction: float, gravity: Array = DOWN,
 ) -> Motion:  # fmt: skip
     reach = 30 * SIZES[-1]
     corners = np.array([[-reach, -2.0], [reach, -2.0], [reach, 0.0], [-reach, 0.0]])
     floor = Body(name="floor", shapes=(corners,), centre=np.zeros(2))
-    asked = np.linspace(start, duration, FRAMES)
     return Motion(
         scene=Scene(
             name=name,
@@ -101,7 +100,7 @@ def _motion(
             gravity=gravity,
             friction=friction,
             bodies=(floor, *bodies),
-            times=np.concatenate([[0.0], asked[asked > 0]]),
+            times=np.linspace(0.0, duration, FRAMES),
             bound=0.0,
         ),
         path=path,

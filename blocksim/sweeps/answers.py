@@ -43,7 +43,6 @@ class Tally:
     ----------
     rows, failed : int
         Rows, and those that say why there is no answer.
-    simulated : int
     simulated_s : float
         Time of the simulations [s].
     spared : int
@@ -58,11 +57,8 @@ class Tally:
 
     def add(self, other: Tally) -> None:
         """Count the rows of another tally, too."""
-        self.rows += other.rows
-        self.failed += other.failed
-        self.simulated += other.simulated
-        self.simulated_s += other.simulated_s
-        self.spared += other.spared
+        for name, value in vars(other).items():
+            setattr(self, name, getattr(self, name) + value)
 
 
 class Answered(NamedTuple):
@@ -70,8 +66,6 @@ class Answered(NamedTuple):
 
     Parameters
     ----------
-    lines : list of bytes
-    tally : Tally
     seconds : dict
         Per pace of cases: number of cases and time taken [s].
     """
@@ -101,13 +95,8 @@ def answer(asked: Sequence[Asked], versions: dict[str, str]) -> Answered:
 
     Parameters
     ----------
-    asked : sequence of Asked
     versions : dict
         Of each method, as where the sweep was started.
-
-    Returns
-    -------
-    Answered
 
     Raises
     ------

@@ -8,9 +8,9 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from blocksim.arch.circular import WEIGHTS
-from blocksim.ask.families import FAMILIES
+from blocksim.ask.families import FAMILIES, IN_SPACE
 from blocksim.ask.methods import CHOICES, METHODS
-from blocksim.blocks.maker import Maker
+from blocksim.blocks.maker import Kind
 from blocksim.blocks.shaking import SHAPES
 from blocksim.common.checks import (
     FRICTION,
@@ -24,13 +24,13 @@ from blocksim.common.errors import MISSING, InputError
 from blocksim.common.fields import Field, fields_of
 from blocksim.common.files import AnyPath
 from blocksim.common.tables import Written, as_said
+from blocksim.engines import ENGINES
 from blocksim.kinds import KINDS
 from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.scenarios import RENAMED, written_in
 from blocksim.simulation.simulated import require_setting
-from blocksim.sweeps.axis import Axis, AxisField, require_axis
 from blocksim.sweeps.case import ACTING, PLAIN, Value
-from blocksim.sweeps.design import Design, How, Values, Words
+from blocksim.sweeps.design import Axis, AxisField, Design, How, Values, Words, require_axis
 
 BAND = Range(low=0, high=math.inf, above=True, infinite=True)
 LARGEST_DESIGN = 20_000_000
@@ -140,6 +140,8 @@ def design_of(table: Mapping[str, Any]) -> Design:
     )
     _require_ranges(design)
     _require_acting(design)
+    for key in ("move", "shake") if kind.in_space else ():
+        require(key not in design.rest, key, "given", f"left out: a {kind.name} is in space")
     _require_asked(design, kind)
     return design
 
@@ -150,10 +152,10 @@ def _place(name: str) -> int:
     return order.index(name) if name in order else len(order)
 
 
-def _kind(table: Mapping[str, Any], name: str) -> type[Maker]:
+def _kind(table: Mapping[str, Any], name: str) -> type[Kind[Any]]:
     named = table.get("kind")
     arches = [each.name for each in KINDS.values() if each.is_arch]
-    known = list(KINDS) if name == "kind" else arches
+    known = [*KINDS] if name == "kind" else arches
     if not isinstance(named, str) or named not in known:
         raise InputError(name, named, f"one of {', '.join(known)}")
     return KINDS[named]
@@ -195,7 +197,7 @@ def _axes(
     return axes, known, rest
 
 
-def _bracketed(kind: type[Maker], rest: Mapping[str, Any]) -> list[str]:
+def _bracketed(kind: type[Kind[Any]], rest: Mapping[str, Any]) -> list[str]:
     """Names of the parameters that may be bracketed over."""
     names: list[str] = []
     for name, known in fields_of(kind).items():
@@ -244,13 +246,20 @@ def _require_acting(design: Design) -> None:
     require(live or design.over != "load", "over", "load", "another: no live loads")
 
 
-def _require_asked(design: Design, kind: type[Maker]) -> None:
+def _require_asked(design: Design, kind: type[Kind[Any]]) -> None:
     """Raise `InputError` where the question or the method is none, or there are too many."""
     axes, plain, over = design.axes, design.is_plain, design.over
     if over is not None:
-        names = (*FAMILIES, *_bracketed(kind, design.rest))
+        common = IN_SPACE if kind.in_space else FAMILIES
+        names = (*common, *_bracketed(kind, design.rest))
         require(over in names, "over", over, f"one of {', '.join(names)}")
     choices = [each for each in CHOICES if kind is CircularArch or each != "theory"]
+    if kind.in_space:
+        choices = [
+            each
+            for each in choices
+            if each in {"auto", "limit"} or ENGINES[each].build_in_space
+        ]
     for word in design.method:
         # A file may name engines that are installed, but no module to be imported.
         own = word in METHODS and word not in METHODS.shipped

@@ -94,15 +94,13 @@ def sweep(
     design : Design, Questions, path or mapping
         What to ask: a design, its file, or what such a file says.
     folder : Path
-        For the rows, made if need be; `read_rows` reads them. One sweep at a time.
+        For the rows, made if need be; `read_rows` reads them.
     executor : Executor, optional
-        Whatever runs the work; by default processes of this machine, replaced where
-        one dies.
+        Runs the work; by default processes of this machine, replaced where one dies.
     workers : int
         Number of processes, where there is no executor.
     in_flight : int, optional
-        Chunks handed out at once, by default two a worker; give at least one for each
-        worker of an executor.
+        Chunks handed out at once, at least one a worker; by default two.
     progress : Progress, optional
 
     Returns
@@ -112,8 +110,7 @@ def sweep(
     Raises
     ------
     InputError, MachineError
-        If the folder cannot be written, holds something else, or another sweep is at work
-        in it.
+        If the folder cannot be written, holds something else, or another sweep uses it.
     MissingPart
         If an engine is not installed, here or at a worker.
     BrokenExecutor
@@ -128,35 +125,13 @@ def sweep(
     ...     sweep(asked, mkdtemp(), executor=executor).cases
     2
     """
-    started = time.perf_counter()
-    if isinstance(design, str | os.PathLike):
-        design = load_design(design)
-    elif isinstance(design, Mapping):
-        design = design_of(design)
+    started, todo = time.perf_counter(), _Todo(design)
     require(workers >= 1, "workers", workers, "at least 1")
     require(in_flight is None or in_flight >= 1, "in_flight", in_flight, "at least 1")
-    versions = {method: version_of(method) for method in design.method}
-    folder = Path(folder)
-    make_folder(folder)
-    many = in_flight or 2 * workers
-    tally = Tally()
-
-    def keep(answered: Answered) -> None:
-        write_shard(folder, answered.lines)
-        tally.add(answered.tally)
-        todo.learn(answered)
-        progress((todo.found + tally.rows) / design.size, _said(tally, started))
-
+    make_folder(folder := Path(folder))
     with locked(folder):
-        todo = _Todo(design, versions, identities(folder))
-        progress(0.0, "")
-        hands = _Hands(executor, workers)
-        try:
-            _work(todo, hands, many, versions, keep)
-        except BaseException:
-            hands.leave()
-            raise
-        hands.leave(wait=True)
+        todo.done = identities(folder)
+        tally = _answered(todo, folder, _Hands(executor, workers, in_flight), progress)
     return Summary(
         cases=todo.found + tally.rows,
         found=todo.found,
@@ -165,9 +140,26 @@ def sweep(
     )
 
 
-def _said(tally: Tally, started: float) -> str:
-    rate = tally.rows / (time.perf_counter() - started)
-    return f"{tally.rows} rows, {rate:.3g} a second"
+def _answered(todo: _Todo, folder: Path, hands: _Hands, progress: Progress) -> Tally:
+    """Answer all cases and write their rows; processes end, however that ends."""
+    tally, started = Tally(), time.perf_counter()
+    progress(0.0, "")
+
+    def keep(answered: Answered) -> None:
+        write_shard(folder, answered.lines)
+        tally.add(answered.tally)
+        todo.learn(answered)
+        rate = tally.rows / (time.perf_counter() - started)
+        said = f"{tally.rows} rows, {rate:.3g} a second"
+        progress((todo.found + tally.rows) / todo.size, said)
+
+    try:
+        _work(todo, hands, keep)
+    except BaseException:
+        hands.leave()
+        raise
+    hands.leave(wait=True)
+    return tally
 
 
 class _Todo:
@@ -175,14 +167,24 @@ class _Todo:
 
     Attributes
     ----------
+    size : int
+        Cases in all.
+    versions : dict of str to str
+        Of the methods that are asked.
+    done : set of bytes
+        Cases whose rows are there.
     found : int
-        Cases passed over because their rows are there.
+        Of those, how many were passed over.
     """
 
-    def __init__(self, design: Questions, versions: dict[str, str], done: set[bytes]) -> None:
-        self._cases = design.cases()
-        self._versions = versions
-        self._done = done
+    def __init__(self, design: Questions | AnyPath | Mapping[str, Any]) -> None:
+        if isinstance(design, str | os.PathLike):
+            design = load_design(design)
+        elif isinstance(design, Mapping):
+            design = design_of(design)
+        self._cases, self.size = design.cases(), design.size
+        self.versions = {method: version_of(method) for method in design.method}
+        self.done: set[bytes] = set()
         self._seen: set[bytes] = set()
         self._pace: dict[Pace, tuple[int, float]] = {}
         self._started = time.perf_counter()
@@ -200,11 +202,11 @@ class _Todo:
         elapsed = time.perf_counter() - self._started
         left = min(max(elapsed * SHARE, SHORTEST), LONGEST)
         for case in self._cases:
-            identity = case.identity(self._versions[case.method])
+            identity = case.identity(self.versions[case.method])
             if identity in self._seen:
                 continue
             self._seen.add(identity)
-            if identity in self._done:
+            if identity in self.done:
                 self.found += 1
                 continue
             chunk.append(Asked(identity, case))
@@ -222,9 +224,16 @@ class _Todo:
 
 
 class _Hands:
-    """The executor given, or processes that are replaced when one of them dies."""
+    """The executor given, or processes that are replaced when one of them dies.
 
-    def __init__(self, given: Executor | None, workers: int) -> None:
+    Attributes
+    ----------
+    many : int
+        Chunks that they are given at once.
+    """
+
+    def __init__(self, given: Executor | None, workers: int, in_flight: int | None) -> None:
+        self.many = in_flight or 2 * workers
         self._given = given
         self._workers = workers
         self._executor = given or processes(workers)
@@ -249,13 +258,7 @@ class _Hands:
             self._executor.end()
 
 
-def _work(
-    todo: _Todo,
-    hands: _Hands,
-    many: int,
-    versions: dict[str, str],
-    keep: Callable[[Answered], None],
-) -> None:
+def _work(todo: _Todo, hands: _Hands, keep: Callable[[Answered], None]) -> None:
     """Hand out chunks and keep what comes back, until there are no more.
 
     A chunk that fails is halved until the case at fault is alone, which becomes a row.
@@ -267,7 +270,7 @@ def _work(
 
     def give_up(chunk: Chunk, why: str, others: deque[Chunk]) -> None:
         if len(chunk) == 1:
-            keep(failed(chunk[0], versions, why))
+            keep(failed(chunk[0], todo.versions, why))
         else:
             middle = len(chunk) // 2
             others.extend((chunk[:middle], chunk[middle:]))
@@ -275,13 +278,13 @@ def _work(
     while True:
         alone = bool(suspects)
         try:
-            while len(pending) < (1 if alone else many):
+            while len(pending) < (1 if alone else hands.many):
                 queue = suspects if alone else again
                 chunk = queue.popleft() if queue else [] if alone else todo.chunk()
                 if not chunk:
                     break
                 try:
-                    pending[hands.submit(chunk, versions)] = chunk
+                    pending[hands.submit(chunk, todo.versions)] = chunk
                 except BrokenExecutor:
                     queue.appendleft(chunk)
                     raise

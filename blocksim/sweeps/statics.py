@@ -9,12 +9,11 @@ from typing import cast
 
 import numpy as np
 
-from blocksim.arch.circular import Weight
+from blocksim.arch.circular import ETA_MAX, Weight
 from blocksim.arch.limit.bulk import least_thickness_of_joints, which_stand
-from blocksim.arch.limit.statics import half_joints
+from blocksim.arch.limit.halfplanes import half_joints
 from blocksim.arch.theory.arrays import least_thicknesses
 from blocksim.ask.methods import STATIC
-from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.assembly import Array
 from blocksim.simulation.verdict import Verdict
 from blocksim.sweeps.case import Case, Row

@@ -142,7 +142,10 @@ def _held(value: object, kind: str) -> object:
 
 
 def _column(name: str, known: Field | None) -> str:
-    return f"{name}_{known.unit}" if known is not None and known.unit else name
+    if known is None or not known.unit:
+        return name
+    # Of an angle the parameter itself has it.
+    return f"{name.removesuffix(f'_{known.unit}')}_{known.unit}"
 
 
 def _flat(row: dict[str, object]) -> dict[str, object]:

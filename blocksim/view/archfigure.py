@@ -1,5 +1,3 @@
-# matplotlib's own annotations leave keyword arguments open.
-# pyright: reportUnknownMemberType=false
 """An arch at its least thickness: its only lines of thrust and friction, how it moves."""
 
 from __future__ import annotations
@@ -20,7 +18,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Polygon
 
 from blocksim.arch.circular import Weight
-from blocksim.arch.limit.collapse import collapse_of_mode
+from blocksim.arch.limit.collapse import Collapse, collapse_of_mode
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory.critical import Critical, inner_sliding
 from blocksim.arch.theory.equations import normal_force
@@ -64,24 +62,17 @@ class ArchPicture:
     ----------
     title, subtitle : str
         Outcome and figures; which arch it is.
-    line : str
-        Which of its lines of thrust is drawn: words after "line of thrust".
-    half_angle, eta, mu : float
     weight : {"centreline", "sector"}
     thrust, crown_moment : float
         h and m of the equilibrium shown.
     joints : (j,) float
         Joints of the stonework, none for the continuous arch [rad].
-    angles : (k,) float
-        Joints of the mechanism, left to right [rad].
-    rates : (k, 4) float
-    motions : (k - 1, 3) float
-        As in `Mechanism`; none move where the arch stands.
+    collapse : Collapse
+        How it falls.
     """
 
     title: str
     subtitle: str
-    line: str
     half_angle: float
     eta: float
     mu: float
@@ -89,21 +80,23 @@ class ArchPicture:
     thrust: float
     crown_moment: float
     joints: Array
-    angles: Array
-    rates: Array
-    motions: Array
+    collapse: Collapse
+
+    @property
+    def sides(self) -> tuple[float, float]:
+        """Radii of the intrados and of the extrados."""
+        return 1 - self.eta / 2, 1 + self.eta / 2
+
+    @property
+    def ring(self) -> Array:
+        """Outline of the whole, (k, 2)."""
+        return _ring(-self.half_angle, self.half_angle, *self.sides)
 
 
 def picture_of_theory(
     critical: Critical, mode: Mode, half_angle: float, mu: float, weight: Weight = "centreline"
 ) -> ArchPicture:
-    """Picture of the continuous arch at its least thickness, moving in one of its modes.
-
-    Raises
-    ------
-    ValueError
-        If no thickness stands, or the mode is not possible there.
-    """
+    """Picture of the continuous arch at its least thickness, moving in one of its modes."""
     moment = critical_moment(half_angle, critical, weight)
     eta, thrust = critical.eta, critical.thrust
     if eta is None or thrust is None:
@@ -118,7 +111,6 @@ def picture_of_theory(
     return ArchPicture(
         title=f"{name} [{mode.value}]: {figures_of(half_angle, eta, mu)}",
         subtitle=f"the continuous arch at its least thickness{acting}",
-        line=", the only one left",
         half_angle=half_angle,
         eta=eta,
         mu=mu,
@@ -126,26 +118,12 @@ def picture_of_theory(
         thrust=thrust,
         crown_moment=moment,
         joints=np.array([-half_angle, half_angle]),
-        angles=found.angles,
-        rates=found.rates,
-        motions=found.motions,
+        collapse=found,
     )
 
 
 def arch_figure(pictures: Sequence[ArchPicture], *, columns: int = 1) -> Figure:
-    """Draw arches one above the other, or in rows of several.
-
-    Parameters
-    ----------
-    pictures : sequence of ArchPicture
-        One or more, row by row.
-    columns : int
-        How many are side by side.
-
-    Returns
-    -------
-    Figure
-    """
+    """Draw arches one above the other, or row by row in so many columns."""
     with mpl.rc_context(FONT):
         firsts = pictures[::columns]
         heights = [1.0 + min(5.0, 6.6 * _slenderness(picture)) for picture in firsts]
@@ -172,21 +150,19 @@ def arch_figure(pictures: Sequence[ArchPicture], *, columns: int = 1) -> Figure:
 
 def draw_arch(axes: Axes, picture: ArchPicture) -> None:
     """Draw one arch into axes."""
-    inner, outer = 1 - picture.eta / 2, 1 + picture.eta / 2
     axes.set_title(picture.title, fontsize=10.5, pad=20)
     axes.annotate(picture.subtitle, (0, 1), xytext=(0, 8), xycoords="axes fraction",
                   textcoords="offset points", color=QUIET, va="baseline")  # fmt: skip
     axes.set_aspect("equal")
     axes.axis("off")
     _draw_supports(axes, picture)
-    _draw_mechanism(axes, picture, inner, outer)
-    whole = _ring(-picture.half_angle, picture.half_angle, inner, outer)
-    _put(axes, whole, fill=False, ec=INK, lw=1.5, zorder=3)
+    _draw_mechanism(axes, picture)
+    _put(axes, picture.ring, fill=False, ec=INK, lw=1.5, zorder=3)
     for angle in picture.joints[1:-1]:
-        axes.plot(*_radius(float(angle), inner, outer), color=INK, lw=0.5, zorder=2)
+        axes.plot(*_radius(float(angle), *picture.sides), color=INK, lw=0.5, zorder=2)
     pressure, shear = lines_of(picture)
     for line, name, tone, width in (
-        (pressure, f"line of thrust{picture.line}", THRUST, 2.0),
+        (pressure, "line of thrust, the only one left", THRUST, 2.0),
         (shear, "line of friction", FRICTION, 1.5),
     ):
         if line is None:
@@ -194,16 +170,14 @@ def draw_arch(axes: Axes, picture: ArchPicture) -> None:
         else:
             axes.plot(*line.T, zorder=5, label=name, color=tone, ls=line_style(tone),
                       lw=width)  # fmt: skip
-    _mark_joints(axes, picture, inner, outer)
+    _mark_joints(axes, picture)
     axes.margins(0.03)
     _draw_scale(axes)
 
 
 def _slenderness(picture: ArchPicture) -> float:
     """Height of an arch over its width."""
-    inner, outer = 1 - picture.eta / 2, 1 + picture.eta / 2
-    ring = _ring(-picture.half_angle, picture.half_angle, inner, outer)
-    across, up = np.ptp(ring, axis=0).tolist()
+    across, up = np.ptp(picture.ring, axis=0).tolist()
     return (up + 0.2) / (across + 0.3)
 
 
@@ -250,24 +224,24 @@ def lines_of(picture: ArchPicture) -> tuple[Array | None, Array | None]:
     return drawn[0], drawn[1]
 
 
-def _draw_mechanism(axes: Axes, picture: ArchPicture, inner: float, outer: float) -> None:
+def _draw_mechanism(axes: Axes, picture: ArchPicture) -> None:
     """Draw the pieces where they move to, faces of joints included."""
-    active = picture.rates.max(axis=1) > FAINT * max(float(picture.rates.max()), FAINT)
+    angles, rates = picture.collapse.angles, picture.collapse.rates
+    active = rates.max(axis=1) > FAINT * max(float(rates.max()), FAINT)
     if not active.any():
         return
     # Voussoirs that move together are one piece; springings bound the outermost ones.
     active[0] = active[-1] = True
     ends = np.flatnonzero(active)
+    motions = picture.collapse.motions
+    rings = [_ring(*pair, *picture.sides) for pair in pairwise(angles.tolist())]
     reach = max(
-        float(
-            np.hypot(*_velocity(picture.motions[i], _corners(picture, i, inner, outer)).T).max()
-        )
-        for i in range(len(picture.motions))
+        float(np.hypot(*_velocity(motion, ring).T).max())
+        for motion, ring in zip(motions, rings, strict=True)
     )
     for first, last in pairwise(ends.tolist()):
-        start, stop = float(picture.angles[first]), float(picture.angles[last])
-        ring = _ring(start, stop, inner, outer)
-        moved = ring + MOVED / reach * _velocity(picture.motions[first], ring)
+        ring = _ring(float(angles[first]), float(angles[last]), *picture.sides)
+        moved = ring + MOVED / reach * _velocity(motions[first], ring)
         _put(axes, moved, fc=MECHANISM, alpha=0.13, ec="none", zorder=1)
         _put(axes, moved, fill=False, ec=MECHANISM, lw=1.3, ls=line_style(MECHANISM), zorder=4,
              label="mechanism")  # fmt: skip
@@ -279,10 +253,11 @@ def _put(axes: Axes, points: Array, **looks: Any) -> None:
     axes.update_datalim(points)
 
 
-def _mark_joints(axes: Axes, picture: ArchPicture, inner: float, outer: float) -> None:
+def _mark_joints(axes: Axes, picture: ArchPicture) -> None:
     """Mark hinges by dots at their edge, sliding joints by bars across."""
-    largest = max(float(picture.rates.max()), FAINT)
-    for angle, rates in zip(picture.angles.tolist(), picture.rates, strict=True):
+    (inner, outer), fall = picture.sides, picture.collapse
+    largest = max(float(fall.rates.max()), FAINT)
+    for angle, rates in zip(fall.angles.tolist(), fall.rates, strict=True):
         out, into, *slides = (rates > FAINT * largest).tolist()
         for turns, radius, state in (
             (out, outer, JointState.HINGE_EXTRADOS),
@@ -311,11 +286,6 @@ def _ring(start: float, stop: float, inner: float, outer: float) -> Array:
     angle = np.linspace(start, stop, max(3, int(ROUND * (stop - start))))
     rays = np.column_stack([np.sin(angle), np.cos(angle)])
     return np.concatenate([inner * rays, outer * rays[::-1]])
-
-
-def _corners(picture: ArchPicture, piece: int, inner: float, outer: float) -> Array:
-    start, stop = picture.angles[piece : piece + 2].tolist()
-    return _ring(start, stop, inner, outer)
 
 
 def _radius(angle: float, inner: float, outer: float) -> tuple[list[float], list[float]]:

@@ -1,5 +1,3 @@
-# matplotlib's own annotations leave keyword arguments open.
-# pyright: reportUnknownMemberType=false
 """Polygons and words to pixels: the one surface that films are drawn on.
 
 matplotlib's Agg renderer, already here for figures, was the quickest of those measured for
@@ -22,7 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.text import Text
 from matplotlib.textpath import text_to_path
-from matplotlib.transforms import Bbox, IdentityTransform, TransformedBbox
+from matplotlib.transforms import Affine2D, Bbox, IdentityTransform, TransformedBbox
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
@@ -55,15 +53,7 @@ def stone_tones(blocks: int) -> list[Colour]:
 
 
 def edge_width(scale: float, grain: float) -> float:
-    """Width of the edges of blocks, thin where blocks are small [pixels].
-
-    Parameters
-    ----------
-    scale : float
-        Pixels in a radius.
-    grain : float
-        Distance from block to block, in radii.
-    """
+    """Width of edges [pixels] by the pixels in a radius, thin where blocks are small [r]."""
     return max(0.25, min(1.6, 0.012 * scale, 0.05 * grain * scale))
 
 
@@ -74,7 +64,6 @@ class Shape(NamedTuple):
     ----------
     points : (k, 2) float
         In pixels from the lower left corner.
-    fill, edge : Colour
     width : float
         Of the edge, in pixels.
     closed : bool
@@ -103,6 +92,22 @@ class Label(NamedTuple):
     across: Literal["left", "center", "right"] = "left"
 
 
+def arrow(tail: Array, tip: Array, tone: Colour, size: float) -> list[Shape]:
+    """Draw an arrow from one place to another [pixels], nothing where it is too short."""
+    way = tip - tail
+    long = float(np.hypot(*way))
+    if long < 2 * size:
+        return []
+    way = way / long
+    head = min(12 * size, long)
+    across = np.array([-way[1], way[0]]) * 0.42 * head
+    back = tip - head * way
+    return [
+        Shape(np.array([tail, back]), edge=tone, width=2.6 * size, closed=False),
+        Shape(np.array([tip, back + across, back - across]), fill=tone),
+    ]
+
+
 def width_of(words: str, size: float, *, bold: bool = False) -> float:
     """Width of words in pixels."""
     weight = "bold" if bold else "normal"
@@ -124,13 +129,7 @@ Part = tuple[Panel, Sequence[Shape]]
 
 
 class Canvas:
-    """A surface that is drawn anew for each frame.
-
-    Parameters
-    ----------
-    width, height : int
-        Pixels.
-    """
+    """A surface, so many pixels wide and high, that is drawn anew for each frame."""
 
     def __init__(self, width: int, height: int) -> None:
         size = width / DOTS, height / DOTS
@@ -164,8 +163,14 @@ class Canvas:
 
     def figure(self) -> Figure:
         """Return the picture as a figure, which ends its use for frames."""
+        # So that it may be saved with more dots an inch.
+        larger = Affine2D().scale(1 / DOTS) + self._figure.dpi_scale_trans
         for order, artist in enumerate([*self._still, *self._moving]):
             artist.set_zorder(order)
+            artist.set_transform(larger)
+            box = artist.get_clip_box()
+            if box is not None:
+                artist.set_clip_box(TransformedBbox(Bbox(box.get_points()), larger))
             self._figure.add_artist(artist)
         return self._figure
 

@@ -1,51 +1,61 @@
-"""Words around a film: title, legend, and where gravity pulls."""
+"""Words of films: title, legend, outcome, where gravity pulls; words that fit."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from blocksim.common.words import counted, printable
-from blocksim.view.canvas import Label, Panel, Shape, colour, width_of
+from blocksim.simulation.motion import MOVED, UNMOVED
+from blocksim.simulation.recording import Recording
+from blocksim.simulation.shaken import outcome
+from blocksim.simulation.verdict import Verdict
+from blocksim.view.canvas import Label, Panel, Shape, arrow, colour, width_of
 from blocksim.view.drawing import friction_words, loading_words
-from blocksim.view.filmwords import fitting
 from blocksim.view.sheet import factor_words
+from blocksim.view.solidstage import SolidStage
 from blocksim.view.stage import Stage
 from blocksim.view.style import DASHES, QUIET
 
 LETTER = 13.0
 """Size of the legend's letters [pixels at 720]."""
+LENGTH = 6.0
+"""How long the motion takes in a film whose slowness is not given, about [s]."""
+SLOW = (1, 2, 3, 4, 5, 6, 8)
+"""Slow motion is one of these times a power of ten."""
 
 
-def gravity_arrow(stage: Stage, panel: Panel, size: float) -> tuple[list[Shape], list[Label]]:
+def gravity_arrow(
+    stage: Stage | SolidStage, panel: Panel, size: float
+) -> tuple[list[Shape], list[Label]]:
     """Show where gravity pulls in the plane, in a corner, unless it is straight down."""
     way = stage.recording.problem.gravity[:2]
     if way[0] == 0:
         return [], []
-    tone = colour(QUIET)
     way = way / np.hypot(*way)
-    across = np.array([-way[1], way[0]])
     middle = np.array([panel.x + panel.width - 64 * size, panel.y + panel.height - 36 * size])
-    tip = middle + 30 * size * way
-    back = tip - 13 * size * way
-    head = np.array([tip, back + 5.5 * size * across, back - 5.5 * size * across])
-    shaft = np.array([middle - 30 * size * way, back])
-    shapes = [
-        Shape(shaft, edge=tone, width=2.5 * size, closed=False),
-        Shape(head, fill=tone),
-    ]
+    half = 30 * size * way
+    shapes = arrow(middle - half, middle + half, colour(QUIET), size)
     under = float(middle[1]) - 52 * size
     words = Label(float(middle[0]), under, "gravity", size=13 * size, across="center")
     return shapes, [words._replace(colour=QUIET)]
 
 
 def title(
-    stage: Stage, panel: Panel, verdict: str, top: float, size: float, *, moving: bool
+    stage: Stage | SolidStage,
+    panel: Panel,
+    verdict: str,
+    top: float,
+    size: float,
+    *,
+    moving: bool,
 ) -> list[Label]:
     """Say what it is, outcome, loading and engine, above a panel."""
     problem = stage.recording.problem
-    built = [*problem.measures, counted(len(stage.assembly.blocks), "block")]
+    blocks = len(stage.assembly.blocks) - len(stage.carriers)
+    built = [*problem.measures, counted(blocks, "block")]
     built.append(friction_words(problem.mu))
     facts = [verdict, *(loading_words(problem) or factor_words(stage.carried))]
     head = printable(problem.title) or "   ".join(built)
@@ -56,10 +66,13 @@ def title(
         sized = problem.has_size
         until = f"{known * problem.seconds:.2g} s" if sized else f"{known:.2g} √(r/g)"
         facts.append(f"known to 1 % until {until}")
-    below = printable(f"{', '.join(facts)}   {run.engine} {run.engine_version}")
+    engine = printable(f"   {run.engine} {run.engine_version}")
     x, wide = panel.x + 24 * size, panel.width - 48 * size
     head = fitting(head, 20 * size, wide, bold=True)
-    below = fitting(below, 15 * size, wide)
+    # Where there is little room facts are cut off: the engine tells films apart.
+    # Small letters are set a little wider than they are measured.
+    room = 0.94 * wide - width_of(engine, 15 * size)
+    below = fitting(printable(", ".join(facts)), 15 * size, room) + engine
     return [
         Label(x, top - 36 * size, head, size=20 * size, bold=True),
         Label(x, top - 61 * size, below, size=15 * size, colour=QUIET),
@@ -84,3 +97,40 @@ def legend_of(
         )  # fmt: skip
         x -= 54 * size
     return shapes, labels
+
+
+def verdict_words(recording: Recording, verdict: Verdict | None = None) -> str:
+    """Say whether it falls: as a check does, or by how far it has moved."""
+    if verdict is not None:
+        return verdict.value
+    if recording.problem.shaking is not None:
+        return outcome(recording)[0].value
+    moved = float(recording.displacement.max())
+    if moved > MOVED:
+        return Verdict.COLLAPSES.value
+    if moved <= UNMOVED:
+        return "at rest"
+    if not recording.problem.has_size:
+        return f"has moved {moved:.1g} r"
+    return f"has moved {moved * recording.assembly.size:.1g} m"
+
+
+def fitting(words: str, size: float, wide: float, *, bold: bool = False) -> str:
+    """Cut words off where they would not fit into a width in pixels."""
+    kept = words
+    while len(kept) > 1 and (have := width_of(kept, size, bold=bold)) > wide:
+        # Measuring is slow: cut in proportion.
+        kept = kept[: min(len(kept) - 2, int(len(kept) * wide / have))].rstrip() + "…"
+    return kept
+
+
+def slowness(seconds: float) -> float:
+    """Slow motion that makes a film about `LENGTH` long, never fast."""
+    wanted = max(1.0, LENGTH / max(seconds, 1e-9))
+    power = 10.0 ** math.floor(math.log10(wanted))
+    return min((step * power for step in (*SLOW, 10)), key=lambda slow: abs(slow - wanted))
+
+
+def digits_of(seconds: float) -> int:
+    """Decimals of the clock: thousandths of what is shown."""
+    return max(1, min(6, math.ceil(2 - math.log10(max(seconds, 1e-9)))))

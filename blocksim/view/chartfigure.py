@@ -1,5 +1,3 @@
-# matplotlib's own annotations leave keyword arguments open.
-# pyright: reportUnknownMemberType=false
 """Speed against accuracy, log-log: a column for each arch, a row for each two quantities."""
 
 from __future__ import annotations
@@ -11,12 +9,11 @@ from typing import Any, NamedTuple
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from blocksim.studies.chart import Cost, Point, front
-from blocksim.view.drawing import literal
+from blocksim.view.drawing import literal, new_figure
 from blocksim.view.style import FONT, QUIET, style_of_method
 
 
@@ -43,13 +40,6 @@ class _Row(NamedTuple):
     y: _Quantity = ERROR
 
 
-class _Picture(NamedTuple):
-    """Rows of panels over each other."""
-
-    title: str
-    rows: Sequence[_Row]
-
-
 DASHED = {"sweeps"}
 """Knobs told from another in the same panel by their line."""
 FRONT: dict[str, Any] = {"color": QUIET, "lw": 7, "alpha": 0.25, "solid_capstyle": "round"}
@@ -65,10 +55,6 @@ MOST_ABREAST = 7
 
 def chart_figures(points: Sequence[Point]) -> dict[str, Figure]:
     """Draw what was measured: each repeat, medians joined, the front in the background.
-
-    Parameters
-    ----------
-    points : sequence of Point
 
     Returns
     -------
@@ -86,52 +72,47 @@ def chart_figures(points: Sequence[Point]) -> dict[str, Figure]:
     cut_short = [p for p in others if p.knob == "hold_sweeps"]
     counted = [p for p in points if p.against == "theory"]
     wanted = {
-        "chart": _Picture("Methods at their best", [_Row(best, TIME), _Row(best, WORK)]),
-        "chart_let_go": _Picture(
+        "chart": ("Methods at their best", [_Row(best, TIME), _Row(best, WORK)]),
+        "chart_let_go": (
             "Moving runs alone, let go at once",
             [_Row(let_go, TIME), _Row(let_go, WORK)],
         ),
-        "chart_cut_short": _Picture(
+        "chart_cut_short": (
             "Onset tests alone, cut short",
             [_Row(cut_short, ALLOWED), _Row(cut_short, TIME), _Row(cut_short, WORK)],
         ),
-        "chart_voussoirs": _Picture(
+        "chart_voussoirs": (
             "Arches of more and more voussoirs, against the continuous one",
             [_Row(counted, NUMBER), _Row(counted, TIME), _Row(counted, NUMBER, TIME)],
         ),
     }
     return {
-        name: _figure(picture, points)
-        for name, picture in wanted.items()
-        if picture.rows[0].points
+        name: _figure(title, rows, points)
+        for name, (title, rows) in wanted.items()
+        if rows[0].points
     }
 
 
-def _figure(picture: _Picture, everything: Sequence[Point]) -> Figure:
+@mpl.rc_context(FONT)
+def _figure(title: str, rows: Sequence[_Row], everything: Sequence[Point]) -> Figure:
     """Draw a column of panels for each arch there are points of."""
-    rows, shown = picture.rows, picture.rows[0].points
+    shown = rows[0].points
     names = list(dict.fromkeys(point.case for point in shown))
-    size = WIDTH * max(len(names), NARROWEST), HEIGHT * len(rows) + 1.1
-    with mpl.rc_context(FONT):
-        figure = Figure(figsize=size, layout="constrained")
-        FigureCanvasAgg(figure)
-        figure.suptitle(picture.title, x=0.01, ha="left", fontsize=11, fontweight="bold")
-        panels = figure.subplots(
-            len(rows), len(names), sharex="row", sharey="row", squeeze=False
-        )
-        for row, line in zip(rows, panels, strict=True):
-            for axes, name in zip(line, names, strict=True):
-                _draw_panel(axes, row, name, [p for p in everything if p.case == name])
-            line[0].set_ylabel(row.y.label)
-        for axes, name in zip(panels[0], names, strict=True):
-            title = literal(name).replace(": ", "\n")
-            if rows[0].x is NUMBER:
-                title = title.partition(", n ")[0]
-            axes.set_title(title, fontsize=9, fontweight="normal")
-        handles = _legend(shown)
-        ncols = math.ceil(len(handles) / math.ceil(len(handles) / MOST_ABREAST))
-        place = "outside lower center"
-        figure.legend(handles=handles, loc=place, ncols=ncols, frameon=False)
+    figure = new_figure((WIDTH * max(len(names), NARROWEST), HEIGHT * len(rows) + 1.1))
+    figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+    panels = figure.subplots(len(rows), len(names), sharex="row", sharey="row", squeeze=False)
+    for row, line in zip(rows, panels, strict=True):
+        for axes, name in zip(line, names, strict=True):
+            _draw_panel(axes, row, name, [p for p in everything if p.case == name])
+        line[0].set_ylabel(row.y.label)
+    for axes, name in zip(panels[0], names, strict=True):
+        words = literal(name).replace(": ", "\n")
+        if rows[0].x is NUMBER:
+            words = words.partition(", n ")[0]
+        axes.set_title(words, fontsize=9, fontweight="normal")
+    handles = _legend(shown)
+    ncols = math.ceil(len(handles) / math.ceil(len(handles) / MOST_ABREAST))
+    figure.legend(handles=handles, loc="outside lower center", ncols=ncols, frameon=False)
     return figure
 
 
@@ -152,20 +133,12 @@ def _draw_panel(axes: Axes, row: _Row, name: str, peers: Sequence[Point]) -> Non
         found = [p for p in line if math.isfinite(p.error)]
         missing = [p for p in line if p not in found]
         style = style_of_method(method)
-        axes.plot(
-            [row.x.of(p) for p in found],
-            [row.y.of(p) for p in found],
-            "--" if knob in DASHED else "-",
-            marker=style.marker,
-            color=style.colour,
-            ms=4.5,
-            lw=1.2,
-            mfc="white" if knob in DASHED else style.colour,
-        )
-        top = high / (high / low) ** (BAND / 2)
-        axes.plot(
-            [row.x.of(p) for p in missing], [top] * len(missing), color=style.colour, **CROSS
-        )
+        dashes, fill = ("--", "white") if knob in DASHED else ("-", style.colour)
+        axes.plot([row.x.of(p) for p in found], [row.y.of(p) for p in found], dashes,
+                  marker=style.marker, color=style.colour, ms=4.5, lw=1.2,
+                  mfc=fill)  # fmt: skip
+        top = [high / (high / low) ** (BAND / 2)] * len(missing)
+        axes.plot([row.x.of(p) for p in missing], top, color=style.colour, **CROSS)
         repeats = [(p, seconds) for p in found for seconds in p.processor_s]
         if TIME in {row.x, row.y}:
             axes.plot(

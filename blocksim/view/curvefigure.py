@@ -1,23 +1,34 @@
-# matplotlib's own annotations leave keyword arguments open.
-# pyright: reportUnknownMemberType=false
-"""Curves of a structure that moves: the push that is borne, or the thrust, over its way."""
+"""Curves: what is borne as blocks move, where a vehicle stands, over a parameter."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import matplotlib as mpl
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from blocksim.ask.bracket import Bracket
+from blocksim.ask.crossing import HEADINGS, Crossing
+from blocksim.blocks.road import road_of
 from blocksim.common.words import printable
-from blocksim.view.drawing import literal
-from blocksim.view.style import FONT, INK, MODES
+from blocksim.simulation.verdict import Verdict
+from blocksim.view.drawing import literal, new_figure
+from blocksim.view.sheet import title_of
+from blocksim.view.structure import draw_structure
+from blocksim.view.style import FONT, INK, LIVE, MODES, QUIET, VERDICTS
 
 COLOURS = (INK, *(style.colour for style in MODES.values()))
 DASHES = ("-", (0, (5, 2)))
+HIGHEST = 5.0
+"""Load factor over the least one, up to which the curve is shown."""
+SIZE = (7.6, 7.2)
+"""[inches]"""
+BEYOND = 3.0
+"""How far values are drawn beyond the bracket, in its widths, and at least a tenth of it."""
 
 
 class Line(NamedTuple):
@@ -31,8 +42,7 @@ class Line(NamedTuple):
 def curve_figure(title: str, across: str, up: str, lines: Sequence[Line]) -> Figure:
     """Draw lines over a way; artists have their names as `gid`."""
     with mpl.rc_context(FONT):
-        figure = Figure(figsize=(7.6, 4.2), layout=ConstrainedLayoutEngine(h_pad=0.1))
-        FigureCanvasAgg(figure)
+        figure = new_figure((7.6, 4.2), pad=0.1)
         axes = figure.add_subplot()
         for place, line in enumerate(lines):
             axes.plot(line.x, line.y, color=COLOURS[place], ls=DASHES[place % 2], lw=1.3,
@@ -44,3 +54,111 @@ def curve_figure(title: str, across: str, up: str, lines: Sequence[Line]) -> Fig
             axes.legend(frameon=False)
         figure.suptitle(literal(printable(title)), x=0.02, ha="left", fontsize=10)
     return figure
+
+
+def envelope_figure(answer: Crossing) -> Figure:
+    """Draw load factors over the middle of the axles, and the worst place below.
+
+    Artists have a `gid`: `factor-right`, `factor-left`, `thrust-min-right`, `thrust-max-right`,
+    `worst`, and those of `problem_figure`.
+    """
+    with mpl.rc_context(FONT):
+        figure = new_figure(SIZE, pad=0.1)
+        rows = figure.subplots(3, 1, sharex=True, height_ratios=(2, 1.3, 2))
+        factors, thrusts, drawn = rows.ravel().tolist()
+        _factors(factors, answer)
+        _thrusts(thrusts, answer)
+        _structure(drawn, answer)
+        drawn.set_xlabel("middle of the axles [m]")
+        title = f"{title_of(answer.problem)}: {printable(answer.vehicle.words)}"
+        figure.suptitle(literal(title), x=0.02, ha="left", fontsize=10)
+    return figure
+
+
+def _middle(axles: tuple[float, ...]) -> float:
+    return (min(axles) + max(axles)) / 2
+
+
+def _factors(axes: Axes, answer: Crossing) -> None:
+    for heading, dashes in zip(HEADINGS, DASHES, strict=True):
+        mine = [place for place in answer.places if place.heading == heading]
+        if mine:
+            x = [_middle(place.axles) for place in mine]
+            axes.plot(x, [place.load_factor for place in mine], color=INK, ls=dashes, lw=1.1,
+                      label=f"heading {heading}", gid=f"factor-{heading}")  # fmt: skip
+    least = answer.load_factor
+    if math.isfinite(least):
+        axes.set_ylim(0, HIGHEST * least)
+        at = _middle(answer.worst.axles)
+        axes.plot(at, least, "o", color=LIVE, ms=5, gid="worst", label=f"least {least:.6g}")
+    axes.set_ylabel("load factor")
+    axes.legend(frameon=False, ncols=3, loc="upper center")
+
+
+def _thrusts(axes: Axes, answer: Crossing) -> None:
+    for heading, dashes in zip(HEADINGS, DASHES, strict=True):
+        found = [
+            (_middle(place.axles), ends[0] / 1e3, ends[1] / 1e3)
+            for place, ends in zip(answer.places, answer.thrusts, strict=True)
+            if place.heading == heading and ends is not None and math.isfinite(ends[1])
+        ]
+        if not found:
+            continue
+        x, least, most = np.array(found).T
+        for name, values, colour in (("min", least, COLOURS[1]), ("max", most, COLOURS[6])):
+            axes.plot(x, values, color=colour, ls=dashes, lw=1.1,
+                      label=f"{'least' if name == 'min' else 'greatest'}, heading {heading}",
+                      gid=f"thrust-{name}-{heading}")  # fmt: skip
+    axes.set_ylabel("thrust at the crown [kN]")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(frameon=False, ncols=2, fontsize=7)
+    else:
+        axes.text(0.5, 0.5, "it falls, or thrust has no meaning, at every place", color=QUIET,
+                  ha="center", transform=axes.transAxes)  # fmt: skip
+
+
+def _structure(axes: Axes, answer: Crossing) -> None:
+    problem, road = answer.problem, road_of(answer.problem)
+    shown = draw_structure(axes, problem, answer.mechanism)
+    height = float(shown[0][:, 1].max()) if road is None else road
+    axes.axhline(height, color=QUIET, lw=0.8, ls=(0, (6, 3)), gid="road")
+    axes.plot(answer.worst.axles, [height] * len(answer.worst.axles), "v", color=LIVE, ms=7,
+              gid="axles", zorder=10)  # fmt: skip
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_ylabel("height [m]")
+
+
+def range_figure(answer: Bracket) -> Figure:
+    """Draw where it stands and falls: artists `stands`, `collapses` and `limit`, by `gid`."""
+    ends = [each for each in (answer.low, answer.high) if each is not None]
+    exact = answer.limit if answer.limit is not None and math.isfinite(answer.limit) else None
+    known = [*ends, *([] if exact is None else [exact])] or [0.0, 1.0]
+    width = max(BEYOND * (max(known) - min(known)), 0.1 * abs(max(known, key=abs)), 1e-12)
+    first, last = min(known) - width, max(known) + width
+    with mpl.rc_context(FONT):
+        figure = new_figure((7.6, 1.7), pad=0.1)
+        axes = figure.add_subplot()
+        below, above = Verdict.COLLAPSES, Verdict.STANDS
+        if answer.stands == "low":
+            below, above = above, below
+        if answer.low is not None:
+            _values(axes, below, first, answer.low)
+        if answer.high is not None:
+            _values(axes, above, answer.high, last)
+        if exact is not None:
+            axes.axvline(exact, color=INK, lw=1.2, ls=(0, (4, 2)), gid="limit",
+                         label="limit analysis")  # fmt: skip
+        axes.set_ylim(-1, 1)
+        axes.set_xlim(first, last)
+        axes.set_yticks([])
+        axes.spines["left"].set_visible(False)
+        unit = f" [{answer.unit}]" if answer.unit else ""
+        axes.set_xlabel(f"{answer.over}{unit}, by {answer.method}")
+        if axes.get_legend_handles_labels()[0]:
+            figure.legend(loc="outside upper center", ncols=3, frameon=False)
+    return figure
+
+
+def _values(axes: Axes, verdict: Verdict, first: float, last: float) -> None:
+    axes.plot([first, last], [0, 0], color=VERDICTS[verdict], lw=9, label=verdict.value,
+              gid=verdict.value, solid_capstyle="butt")  # fmt: skip

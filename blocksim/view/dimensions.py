@@ -29,7 +29,7 @@ class Length:
     ----------
     what : str
         span, rise, thickness, width or height.
-    start, end : (2,) float
+    ends : pair of (2,) float
         The points [m].
     at : (2,) float
         A point of the dimension line [m].
@@ -40,8 +40,7 @@ class Length:
     """
 
     what: str
-    start: Array
-    end: Array
+    ends: tuple[Array, Array]
     at: Array
     along: Array
     note: str = ""
@@ -49,7 +48,7 @@ class Length:
     @property
     def value(self) -> float:
         """What is measured [m]."""
-        return float((self.end - self.start) @ self.along)
+        return float((self.ends[1] - self.ends[0]) @ self.along)
 
     @property
     def words(self) -> str:
@@ -63,27 +62,10 @@ class Length:
         feet = [self.at + ((end - self.at) @ self.along) * self.along for end in self.ends]
         return np.array(feet)
 
-    @property
-    def ends(self) -> tuple[Array, Array]:
-        """Both points."""
-        return self.start, self.end
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Angle:
-    """The half-angle of embrace, from the crown to the right springing.
-
-    Parameters
-    ----------
-    centre : (2,) float
-        Of the circle [m].
-    radius : float
-        Of the dimension's arc [m].
-    reach : float
-        Where lines that lead to it begin, from the centre [m].
-    value : float
-        [rad]
-    """
+    """The half-angle [rad], right of the crown: an arc, and leads from `reach` on [m]."""
 
     centre: Array
     radius: float
@@ -108,7 +90,6 @@ def dimensions_of(problem: Problem, shown: Array, scale: float) -> list[Length |
 
     Parameters
     ----------
-    problem : Problem
     shown : (k, 2) float
         Points of what is drawn [m]; dimension lines of the whole are beyond.
     scale : float
@@ -125,15 +106,16 @@ def dimensions_of(problem: Problem, shown: Array, scale: float) -> list[Length |
     return [
         Length(
             what="width",
-            start=corners[corners[:, 0].argmin()],
-            end=corners[corners[:, 0].argmax()],
+            ends=(corners[corners[:, 0].argmin()], corners[corners[:, 0].argmax()]),
             at=top,
             along=np.array([1.0, 0.0]),
         ),
         Length(
             what="height",
-            start=corners[corners[:, 1].argmin()],
-            end=np.array([corners[corners[:, 1].argmax(), 0], most[1]]),
+            ends=(
+                corners[corners[:, 1].argmin()],
+                np.array([corners[corners[:, 1].argmax(), 0], most[1]]),
+            ),
             at=left,
             along=np.array([0.0, 1.0]),
         ),
@@ -151,8 +133,7 @@ def _of_arch(problem: Problem, shown: Array, scale: float) -> list[Length | Angl
         found.append(
             Length(
                 what="span",
-                start=left,
-                end=right,
+                ends=(left, right),
                 at=np.array([middle, level]),
                 along=np.array([1.0, 0.0]),
                 note="intrados",
@@ -163,8 +144,7 @@ def _of_arch(problem: Problem, shown: Array, scale: float) -> list[Length | Angl
         found.append(
             Length(
                 what="rise",
-                start=np.array([top[0], level]),
-                end=top,
+                ends=(np.array([top[0], level]), top),
                 at=top,
                 along=np.array([0.0, 1.0]),
                 note="intrados",
@@ -200,8 +180,7 @@ def _thickness(problem: Problem) -> list[Length | Angle]:
             return [
                 Length(
                     what="thickness",
-                    start=joint.inner,
-                    end=joint.outer,
+                    ends=(joint.inner, joint.outer),
                     at=joint.inner,
                     along=joint.tangent,
                 )

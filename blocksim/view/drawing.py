@@ -1,19 +1,20 @@
-# matplotlib's own annotations leave keyword arguments open.
-# pyright: reportUnknownMemberType=false
 """What all pictures have in common: files, outlines, clipping, words."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import BinaryIO, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from blocksim.blocks.assembly import Array
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState
+from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import Problem
 from blocksim.common.words import printable
 from blocksim.view.style import FONT, JOINTS
@@ -29,23 +30,24 @@ HINGES = {JointState.HINGE_INTRADOS: 0, JointState.HINGE_EXTRADOS: 1}
 """End of a joint that stays closed: inner or outer."""
 NEAR = 1e-6
 """Share of a length within which sides lie on each other."""
+MEETS = 1e-9
+"""Share of a side within which ends of sides are the same corner."""
 DOTS = 150
 """In an inch of a picture whose height is not given."""
+
+
+def new_figure(size: tuple[float, float] | None = None, *, pad: float | None = None) -> Figure:
+    """Begin a figure so large [inches], parts so far apart; not laid out without a size."""
+    layout = None if size is None else ConstrainedLayoutEngine(h_pad=pad)
+    figure = Figure(figsize=size, layout=layout)
+    FigureCanvasAgg(figure)
+    return figure
 
 
 def save_figure(
     figure: Figure, file: BinaryIO, kind: str, *, height: int | None = None
 ) -> None:
-    """Write a figure as png, svg or pdf, without the date, so that equal ones are equal.
-
-    Parameters
-    ----------
-    figure : Figure
-    file : BinaryIO
-    kind : {"png", "svg", "pdf"}
-    height : int, optional
-        Of a png, in pixels.
-    """
+    """Write a png (of so many pixels), svg or pdf without the date: equal ones are equal."""
     undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
     metadata = undated.get(kind, {"Software": "blocksim"})
     # A hair more, lest a pixel is lost to round-off.
@@ -82,9 +84,12 @@ def friction_words(mu: float) -> str:
     return "μ = ∞" if math.isinf(mu) else f"μ = {mu:.4g}"
 
 
-def loading_words(problem: Problem) -> list[str]:
+def loading_words(problem: Problem[Any]) -> list[str]:
     """Say what besides its weight acts: tilt, lean, the load factor, ground that shakes."""
     x, y, z = problem.gravity.tolist()
+    # In space it pulls down along the last axis.
+    if problem.in_space:
+        x, y, z = math.hypot(x, y), z, 0.0
     words: list[str] = []
     if not (x or y or z):
         words.append("no gravity")
@@ -103,13 +108,7 @@ def loading_words(problem: Problem) -> list[str]:
 
 
 def clipped(polygon: Array, low: Array, high: Array) -> Array:
-    """Cut a convex polygon off at a box (Sutherland and Hodgman 1974).
-
-    Returns
-    -------
-    (k, 2) float
-        Without corners where nothing is left.
-    """
+    """Cut a convex polygon off at a box, (k, 2); k = 0 beyond (Sutherland and Hodgman 1974)."""
     for axis in (0, 1):
         for sign, limit in ((1.0, float(high[axis])), (-1.0, -float(low[axis]))):
             kept: list[Array] = []
@@ -171,10 +170,46 @@ def outer_sides(polygons: Sequence[Array]) -> list[Array]:
     ]
 
 
+def outline(polygons: tuple[Array, ...]) -> Array:
+    """Return the outline of convex polygons that touch, counter-clockwise.
+
+    Raises
+    ------
+    ValueError
+        If it is not one closed line: two bodies, or one with a hole.
+    """
+    if len(polygons) == 1:
+        return polygons[0]
+    sides = outer_sides(polygons)
+    near = MEETS * max(float(np.hypot(*(side[1] - side[0]))) for side in sides)
+    left, corners = sides[1:], [sides[0][0], sides[0][1]]
+    while left:
+        ahead = next(
+            (k for k, side in enumerate(left) if np.hypot(*(side[0] - corners[-1])) < near),
+            None,
+        )
+        if ahead is None:
+            break
+        corners.append(left.pop(ahead)[1])
+    closed = np.array(corners)
+    if left or np.hypot(*(closed[-1] - closed[0])) > near or signed_area(closed[:-1]) <= 0:
+        message = "the outline is not one closed line"
+        raise ValueError(message)
+    return closed[:-1]
+
+
 def along_side(corners: Array, side: int, start: float, stop: float) -> Array:
     """Two points on a side of a polygon, by their shares of it, (2, 2 or 3)."""
     ends = np.array([[1 - start, start], [1 - stop, stop]])
     return ends @ corners[[side, (side + 1) % len(corners)]]
+
+
+def grain_of(assembly: Assembly) -> float:
+    """Least distance between the centres of blocks that meet; of one alone its reach [m]."""
+    before, after, *_ = assembly.joint_arrays
+    pairs = (before != SUPPORT) & (after != SUPPORT)
+    apart = np.hypot(*(assembly.centres[after[pairs]] - assembly.centres[before[pairs]]).T)
+    return float(apart.min() if len(apart) else assembly.reach.min())
 
 
 def carried(points: Array, centre: Array, rates: Array) -> Array:

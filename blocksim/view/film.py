@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import BinaryIO, Literal, Protocol
+from itertools import pairwise
+from typing import Any, BinaryIO, Literal
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -18,17 +19,20 @@ from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
 from blocksim.view.acting import Acting
 from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
-from blocksim.view.captions import gravity_arrow, legend_of, title
-from blocksim.view.drawing import (
-    ARCH_WORDS,
-    round_length,
-    words_of,
+from blocksim.view.captions import (
+    digits_of,
+    gravity_arrow,
+    legend_of,
+    slowness,
+    title,
+    verdict_words,
 )
-from blocksim.view.filmwords import digits_of, slowness, verdict_words
-from blocksim.view.following import EASED, eased, needed, zoomed
+from blocksim.view.drawing import ARCH_WORDS, round_length, words_of
+from blocksim.view.following import EASED, View, eased, is_lost, needed, zoomed
 from blocksim.view.planar import PlanarView
+from blocksim.view.solidstage import SolidStage
 from blocksim.view.spatial import SpatialView
-from blocksim.view.stage import Moment, Stage
+from blocksim.view.stage import Stage
 from blocksim.view.style import INK, QUIET, THRUST
 
 ViewName = Literal["2d", "3d"]
@@ -37,34 +41,10 @@ BEFORE, AFTER = 0.8, 1.2
 TALL = 720
 """Height for which sizes below are given [pixels]."""
 HEAD, FOOT = 74.0, 44.0
+NEAR = 0.3
+"""Share of the room beside blocks that films side by side begin with."""
 SAMPLES = 200
 """Times at which it is seen whether blocks leave the picture."""
-
-
-class View(Protocol):
-    """How a stage is looked at."""
-
-    @property
-    def still(self) -> list[Shape]:
-        """What stays the same in every frame."""
-        ...
-
-    def shapes(self, moment: Moment) -> list[Shape]:
-        """Draw a moment."""
-        ...
-
-    def scale_bar(self, length: float, words: str) -> tuple[list[Shape], list[Label]]:
-        """Draw a bar of a length in units of the radius, and its words."""
-        ...
-
-    def places(self, points: Array) -> Array:
-        """Return where points in space are seen [pixels]."""
-        ...
-
-    @property
-    def centre(self) -> Array:
-        """The place that stays as the camera draws back [pixels]."""
-        ...
 
 
 class Film:
@@ -79,6 +59,7 @@ class Film:
     enlarge : float
         How many times larger than it was the motion is drawn.
     view : {"2d", "3d"}
+        Of blocks of the plane; those in space are seen in perspective.
     slow : float, optional
         How many times slower than it happened; by default such that the motion takes
         about six seconds.
@@ -127,28 +108,28 @@ class Film:
         self._words = [verdict_words(recording, verdict) for recording in recordings]
         self._enlarge = enlarge
         self._is_mode = verdict is not None
-        self._flat = view == "2d"
-        self._stages = [Stage(_enlarged(recording, enlarge)) for recording in recordings]
+        # Blocks in space are seen in perspective, however it is asked.
+        self._flat = view == "2d" and not any(each.problem.in_space for each in recordings)
+        # Side by side there is less room beside the blocks; the camera draws back for them.
+        near = 1.0 if len(recordings) == 1 else NEAR
+        self._stages = [stage_of(_enlarged(each, enlarge), near) for each in recordings]
         # An arch of which no radius was given is shown in units of it.
         self.metric = any(recording.problem.has_size for recording in recordings)
         self.moves = [stage.moves for stage in self._stages]
         self.speed = max(stage.speed for stage in self._stages)
-        self.seconds = self._duration()
         self.on_ground = any(stage.sinks < np.inf for stage in self._stages)
-        self.slow = slowness(self.seconds) if slow is None else slow
         self._size = self.height / TALL
         self._panels = self._arrange()
-        kinds: dict[ViewName, type[PlanarView | SpatialView]] = {
-            "2d": PlanarView,
-            "3d": SpatialView,
-        }
+        kind: Any = PlanarView if self._flat else SpatialView
         # One scale for all, so that they can be compared.
-        framed = [*self._stages, *map(Stage, beside)]
+        framed = [*self._stages, *map(stage_of, beside)]
         shown = np.concatenate([stage.swept - [stage.middle, 0.0, 0.0] for stage in framed])
         self._views: list[View] = [
-            kinds[view](stage, panel, shown)
+            kind(stage, panel, shown)
             for stage, panel in zip(self._stages, self._panels, strict=True)
         ]
+        self.seconds = self._duration()
+        self.slow = slowness(self.seconds) if slow is None else slow
         self._canvas = Canvas(self.width, self.height)
         self._acting = [
             Acting(stage, view, panel, self._size)
@@ -176,33 +157,19 @@ class Film:
         return self._last[1]
 
     def still(self, file: BinaryIO, kind: str, at: float | None = None) -> None:
-        """Write one frame as png, svg or pdf.
-
-        Parameters
-        ----------
-        file : BinaryIO
-        kind : {"png", "svg", "pdf"}
-        at : float, optional
-            Time since the release in the unit of the clock; by default the end.
-        """
+        """Write a frame as png, svg or pdf: at a time in the unit of its clock, or the end."""
         self._pose(at)
         self._canvas.save(file, kind)
 
     def figure(self, at: float | None = None) -> Figure:
-        """Return one frame as a figure; the film is at its end with that.
-
-        Parameters
-        ----------
-        at : float, optional
-            As of `still`.
-        """
+        """Return one frame as a figure, as of `still`; the film is at its end with that."""
         self._pose(at)
         return self._canvas.figure()
 
     def _pose(self, at: float | None) -> None:
         """Draw one frame with a legend of what is seen in it."""
         seconds = self._within(self.seconds if at is None else at * self._tick)
-        moments = [stage.at(seconds / _unit(stage.recording)) for stage in self._stages]
+        moments = [stage.at(seconds / stage.unit) for stage in self._stages]
         seen = {state for moment in moments for state in moment.joints}
         at_rest = any(moment.statics > 0 for moment in moments)
         self._canvas.keep(*self._still(seen, thrust=at_rest))
@@ -218,8 +185,7 @@ class Film:
         shares = np.ones(len(times))
         for stage, view, panel in zip(self._stages, self._views, self._panels, strict=True):
             for at, seconds in enumerate(times.tolist() if stage.moves else []):
-                corners = stage.at(seconds / _unit(stage.recording)).corners.reshape(-1, 3)
-                share = needed(view.places(corners), panel, view.centre)
+                share = needed(_seen(stage, view, seconds), panel, view.centre)
                 shares[at] = min(shares[at], share)
         if shares.min() == 1:
             return None
@@ -234,7 +200,7 @@ class Film:
         share = self.share(seconds)
         each = zip(self._stages, self._views, self._acting, self._panels, strict=True)
         for stage, view, acting, panel in each:
-            moment = stage.at(seconds / _unit(stage.recording))
+            moment = stage.at(seconds / stage.unit)
             around = list[Shape]()
             if self._shares is not None:
                 bar, words = self._scale_bar(stage, view, share)
@@ -250,18 +216,31 @@ class Film:
         self._canvas.draw(parts, labels)
 
     def _scale_bar(
-        self, stage: Stage, view: View, share: float = 1.0
+        self, stage: Stage | SolidStage, view: View, share: float = 1.0
     ) -> tuple[list[Shape], list[Label]]:
         radius = stage.recording.assembly.size
         length = round_length(0.5 * radius / share)
         unit = "m" if self.metric else "r"
-        return view.scale_bar(share * length / radius, f"{length:g} {unit}")
+        return view.scale_bar(share * length / radius, f"{length:g} {unit}", self._size)
 
     def _duration(self) -> float:
-        """Seconds shown: until the last of those that move has ended."""
-        ends = [stage.end * _unit(stage.recording) for stage in self._stages]
+        """Seconds shown: until the last of those that move has ended, or is out of sight."""
+        ends = [stage.end * stage.unit for stage in self._stages]
         moving = [end for end, stage in zip(ends, self._stages, strict=True) if stage.moves]
-        return max(moving or ends)
+        last = max(moving or ends)
+        if self._lost(last):
+            times = np.linspace(0.0, last, SAMPLES).tolist()
+            last = next(before for before, at in pairwise(times) if self._lost(at))
+        return last
+
+    def _lost(self, seconds: float) -> bool:
+        """Tell whether all that moves has left the picture, however far that is."""
+        views = zip(self._stages, self._views, self._panels, strict=True)
+        moving = [each for each in views if each[0].moves]
+        return bool(moving) and all(
+            is_lost(_seen(stage, view, seconds), panel, view.centre)
+            for stage, view, panel in moving
+        )
 
     def _arrange(self) -> list[Panel]:
         head, foot = HEAD * self._size, FOOT * self._size
@@ -289,11 +268,11 @@ class Film:
             moving = bool(stage.speed) and not self._is_mode
             labels += [*name, *title(stage, panel, verdict, self.height, size, moving=moving)]
         whole = Panel(0, 0, self.width, self.height)
-        rules = [
-            np.array([[panel.x, FOOT * self._size], [panel.x, self.height]])
+        lines = [
+            Shape(np.array([[panel.x, panel.y], [panel.x, self.height]]),
+                  edge=colour(INK, 0.25), width=1, closed=False)
             for panel in self._panels[1:]
-        ]
-        lines = [Shape(r, edge=colour(INK, 0.25), width=1, closed=False) for r in rules]
+        ]  # fmt: skip
         legend, words = legend_of(self._entries(states, thrust=thrust), self.width, size)
         return [*parts, (whole, [*lines, *legend])], [*labels, *words, self._pace()]
 
@@ -321,9 +300,15 @@ class Film:
         is_arch = all(stage.is_arch for stage in self._stages)
         told = [words_of(state, is_arch=is_arch) for state in ARCH_WORDS if state in states]
         if thrust and any(stage.thrust for stage in self._stages):
-            told.append(("line of thrust at rest", THRUST))
+            rests = all(stage.carried is None or stage.carried.stands for stage in self._stages)
+            told.append((f"{'' if rests else 'nearest '}line of thrust at rest", THRUST))
         told += [entry for acting in self._acting for entry in acting.entries]
         return list(dict.fromkeys(told))
+
+
+def stage_of(recording: Recording[Any], near: float = 1.0) -> Stage | SolidStage:
+    """Make a recording ready for the eye, in the plane or in space."""
+    return (SolidStage if recording.problem.in_space else Stage)(recording, near)
 
 
 def _enlarged(recording: Recording, times: float) -> Recording:
@@ -333,6 +318,6 @@ def _enlarged(recording: Recording, times: float) -> Recording:
     return replace(recording, poses=rest + times * (recording.poses - rest))
 
 
-def _unit(recording: Recording) -> float:
-    """Seconds in one sqrt(r/g)."""
-    return math.sqrt(recording.assembly.size / GRAVITY)
+def _seen(stage: Stage | SolidStage, view: View, seconds: float) -> Array:
+    """Return where the corners of blocks are in the picture at a time [s], (k, 2)."""
+    return view.places(stage.corners_at(seconds / stage.unit).reshape(-1, 3))

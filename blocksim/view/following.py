@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any, Protocol
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
-from blocksim.view.canvas import Panel, Shape
+from blocksim.view.canvas import Label, Panel, Shape
 
 EASED = 0.5
 """How long before a block would leave the camera begins to draw back [s of film]."""
@@ -17,23 +18,46 @@ MARGIN = 0.03
 """Share of a panel on each side that blocks keep off."""
 
 
-def needed(places: Array, panel: Panel, centre: Array) -> float:
-    """Return the share of their size at which points find place in a panel, at most 1.
+class View(Protocol):
+    """How a stage is looked at."""
 
-    Parameters
-    ----------
-    places : (k, 2) float
-        In pixels.
-    panel : Panel
-    centre : (2,) float
-        The point that stays where it is [pixels].
-    """
+    still: list[Shape]
+    """What stays the same in every frame."""
+
+    def shapes(self, moment: Any) -> list[Shape]:
+        """Draw a moment of the stage."""
+        ...
+
+    def scale_bar(
+        self, length: float, words: str, size: float
+    ) -> tuple[list[Shape], list[Label]]:
+        """Draw a bar of a length in units of the radius, and its words so large [over 720]."""
+        ...
+
+    def places(self, points: Array) -> Array:
+        """Return where points in space are seen [pixels]."""
+        ...
+
+    @property
+    def centre(self) -> Array:
+        """The place that stays as the camera draws back [pixels]."""
+        ...
+
+
+def needed(places: Array, panel: Panel, centre: Array) -> float:
+    """Return the share at which places find room in a panel, about a point that stays."""
     low = np.array([panel.x + MARGIN * panel.width, panel.y])
     high = np.array([panel.x + (1 - MARGIN) * panel.width, panel.y + panel.height])
     off = places - centre
     room = np.where(off > 0, high - centre, centre - low)
     least = float((room / np.maximum(np.abs(off), 1e-9)).min(initial=1.0))
     return max(FARTHEST, min(1.0, least))
+
+
+def is_lost(places: Array, panel: Panel, centre: Array) -> bool:
+    """Tell whether no point is in the picture, however far the camera draws back."""
+    off = FARTHEST * (places - centre) + centre - [panel.x, panel.y]
+    return not bool(((off > 0) & (off < [panel.width, panel.height])).all(axis=1).any())
 
 
 def eased(times: Array, shares: Array, before: float) -> tuple[Array, Array]:

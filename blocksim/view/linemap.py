@@ -1,5 +1,3 @@
-# matplotlib's own annotations leave keyword arguments open.
-# pyright: reportUnknownMemberType=false
 """The map as lines: what divides the regions, and equal half-angles (Figs 6-8)."""
 
 from __future__ import annotations
@@ -10,13 +8,13 @@ from collections.abc import Sequence
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from blocksim.arch.circular import Weight
 from blocksim.arch.theory import Curve, equations, landmarks, least_thicknesses
 from blocksim.arch.theory.critical import rotational_thrust
 from blocksim.arch.theory.map import special_angles
+from blocksim.view.drawing import new_figure
 from blocksim.view.mapregions import draw_asymptote, draw_landmarks
 from blocksim.view.mapshapes import (
     COEFFICIENT,
@@ -34,31 +32,14 @@ SPACE, BESIDE = 0.024, 0.0175
 LABELS = {"S": (-17, -14), "J": (-12, 4), "T": (-12, 4), "B": (6, -12)}
 
 
+@mpl.rc_context(FONT)
 def line_map_figure(
     span: tuple[float, float] = (0.0, 2.0),
     weight: Weight = "centreline",
     friction: FrictionAxis = COEFFICIENT,
 ) -> Figure:
-    """Draw the dividing lines and lines of equal half-angle (Figs 6-8).
-
-    Parameters
-    ----------
-    span : (float, float)
-        Thickness-to-radius ratios shown: (0, 2), (0, 1) and (0.6, 2) in the paper.
-    weight : {"centreline", "sector"}
-    friction : FrictionAxis
-
-    Returns
-    -------
-    Figure
-    """
-    with mpl.rc_context(FONT):
-        return _line_map(span, weight, friction)
-
-
-def _line_map(span: tuple[float, float], weight: Weight, friction: FrictionAxis) -> Figure:
-    figure = Figure(figsize=(8.6, 7.2), layout="constrained")
-    FigureCanvasAgg(figure)
+    """Draw dividing lines and lines of equal half-angle, in a span of thickness (Figs 6-8)."""
+    figure = new_figure((8.6, 7.2))
     axes = figure.add_subplot()
     axes.set(xlim=(0, friction.end), ylim=span, xlabel=friction.label,
              ylabel=r"thickness-to-radius ratio $\eta = t/r$")  # fmt: skip
@@ -101,7 +82,11 @@ def _iso_lines(
         if span[0] < end <= span[1]:
             beside[name] = end
         elif end <= span[0]:
-            _name_upright(axes, name, float(friction.place(continued.mu[0])), span[1])
+            # It leaves the picture upright.
+            foot = float(friction.place(continued.mu[0])), span[1]
+            axes.annotate(name, foot, xytext=(0, 3), textcoords="offset points", ha="center",
+                          va="bottom", rotation=90, color=ISO, fontsize=8,
+                          annotation_clip=False)  # fmt: skip
     for (name, end), place in zip(
         beside.items(), apart(list(beside.values()), SPACE * (span[1] - span[0])), strict=True
     ):
@@ -110,13 +95,6 @@ def _iso_lines(
                       va="center", color=ISO, fontsize=8, annotation_clip=False,
                       arrowprops={"arrowstyle": "-", "color": ISO, "lw": 0.5, "shrinkA": 0,
                                   "shrinkB": 0, "relpos": (0, 0.5)})  # fmt: skip
-
-
-def _name_upright(axes: Axes, name: str, place: float, top: float) -> None:
-    """Name a line above the picture, which it leaves upright."""
-    axes.annotate(name, (place, top), xytext=(0, 3), textcoords="offset points", ha="center",
-                  va="bottom", rotation=90, color=ISO, fontsize=8,
-                  annotation_clip=False)  # fmt: skip
 
 
 def angle_name(half_angle: float) -> str:
@@ -154,7 +132,7 @@ def _dividing_lines(axes: Axes, weight: Weight, friction: FrictionAxis) -> None:
             friction.place(curve.mu), curve.eta, color=INK, lw=width, ls=style, label=name
         )
 
-    draw(shapes.divide, r"$\mu=\mu_{ss}=\mu_{is}$", 2.0, "-")
+    draw(shapes.lines["divide"], r"$\mu=\mu_{ss}=\mu_{is}$", 2.0, "-")
     # Denser towards the wide arches, where friction runs off to infinity.
     widest = special_angles(weight).zero_thrust
     alpha = widest * (1 - np.linspace(0.985, 1e-4, 240) ** 2)
@@ -178,5 +156,5 @@ def _dividing_lines(axes: Axes, weight: Weight, friction: FrictionAxis) -> None:
         mu = np.asarray(values)
         draw(Curve(mu=mu[real], eta=eta[real]), name, 1.5, style)
         draw(Curve(mu=mu[~real], eta=eta[~real]), "_", 0.7, DASHED)
-    draw(shapes.equal, r"$\beta_r=\beta_s$", 1.2, ":")
-    draw(shapes.crown, r"$\beta_r=0$", 1.2, "-.")
+    draw(shapes.lines["equal"], r"$\beta_r=\beta_s$", 1.2, ":")
+    draw(shapes.lines["crown"], r"$\beta_r=0$", 1.2, "-.")

@@ -1,5 +1,3 @@
-# matplotlib's own annotations leave keyword arguments open.
-# pyright: reportUnknownMemberType=false
 """The mode map with arches on it: marks, labels that hide nothing, legend (Figs 9-11)."""
 
 from __future__ import annotations
@@ -11,7 +9,6 @@ from dataclasses import dataclass
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -19,6 +16,7 @@ from blocksim.arch import theory
 from blocksim.arch.circular import Weight
 from blocksim.arch.modes import Mode
 from blocksim.blocks.assembly import Array
+from blocksim.view.drawing import new_figure
 from blocksim.view.mapregions import (
     LETTERS,
     NEAR,
@@ -113,8 +111,7 @@ def map_figure(
         message = "points are drawn on an axis of coefficients"
         raise ValueError(message)
     with mpl.rc_context(FONT):
-        figure = Figure(figsize=(10.4, 6.9) if points else (8.6, 7.0), layout="constrained")
-        FigureCanvasAgg(figure)
+        figure = new_figure((10.4, 6.9) if points else (8.6, 7.0))
         axes = figure.add_subplot()
         crowded = [point for point in points if NEAR.shows(point.mu, point.eta)]
         section = section_of(weight, central=central)
@@ -135,14 +132,19 @@ def map_figure(
             _draw_points(axes, section, points, unnamed=crowded)
             _legend(figure, points)
         if crowded:
-            near = axes.inset_axes(INSET)
-            draw_regions(near, NEAR, weight)
-            near.set(xlabel="", ylabel="", xticks=[1.7, 1.8, 1.9], yticks=[0.92, 0.97, 1.02])
-            near.tick_params(labelsize=8)
-            near.spines[:].set_visible(True)
-            _draw_points(near, NEAR, crowded)
-            axes.indicate_inset_zoom(near, edgecolor=INK, alpha=0.6)
+            _draw_near(axes, crowded, weight)
     return figure
+
+
+def _draw_near(axes: Axes, crowded: Sequence[MapPoint], weight: Weight) -> None:
+    """Draw the part where arches crowd enlarged, within the map."""
+    near = axes.inset_axes(INSET)
+    draw_regions(near, NEAR, weight)
+    near.set(xlabel="", ylabel="", xticks=[1.7, 1.8, 1.9], yticks=[0.92, 0.97, 1.02])
+    near.tick_params(labelsize=8)
+    near.spines[:].set_visible(True)
+    _draw_points(near, NEAR, crowded)
+    axes.indicate_inset_zoom(near, edgecolor=INK, alpha=0.6)
 
 
 def _place(point: MapPoint) -> tuple[float, float]:
@@ -214,9 +216,8 @@ def _draw_points(
 
 def _lines(section: Section) -> Array:
     """Points on the lines of the map, as dense as its page has them, (k, 2)."""
-    shapes = map_shapes()
     found: list[Array] = []
-    for curve in (shapes.divide, shapes.first, shapes.equal, shapes.crown):
+    for curve in map_shapes().lines.values():
         first = max(section.mu[0], float(curve.mu.min()))
         mu = np.linspace(first, min(section.mu[1], float(curve.mu.max())), 400)
         order = np.argsort(curve.mu)

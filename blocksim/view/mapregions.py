@@ -1,5 +1,3 @@
-# matplotlib's own annotations leave keyword arguments open.
-# pyright: reportUnknownMemberType=false
 """Regions of the mode map, the lines between them and their names (Figs 9-11)."""
 
 from __future__ import annotations
@@ -27,17 +25,7 @@ from blocksim.view.style import INK, MODES
 
 
 class Section(NamedTuple):
-    """A part of the map to draw.
-
-    Parameters
-    ----------
-    mu, eta : (float, float)
-        Friction and thickness shown.
-    names : dict of Mode to (float, float)
-        Where each mode is named.
-    thin : (float, float, float), optional
-        Friction at which a line to the thin region rsr ends; where it is named.
-    """
+    """A part of the map, where modes are named, and where a line to the thin region leads."""
 
     mu: tuple[float, float]
     eta: tuple[float, float]
@@ -49,28 +37,22 @@ class Section(NamedTuple):
         return self.mu[0] <= mu <= self.mu[1] and self.eta[0] <= eta <= self.eta[1]
 
 
+def _named(*places: tuple[float, float]) -> dict[Mode, tuple[float, float]]:
+    return dict(zip(NAMED, places, strict=True))
+
+
+NAMED = (Mode.RRR, Mode.SS, Mode.SRR, Mode.RRS, Mode.RS)
+"""Modes that are named on the map, but for the thin region and unbounded friction."""
 WHOLE = Section(
     (0.0, LARGEST_MU),
     (0.0, 2.0),
-    {
-        Mode.RRR: (2.3, 0.35),
-        Mode.SS: (0.75, 1.35),
-        Mode.SRR: (0.72, 0.355),
-        Mode.RRS: (2.45, 0.885),
-        Mode.RS: (3.4, 1.6),
-    },
+    _named((2.3, 0.35), (0.75, 1.35), (0.72, 0.355), (2.45, 0.885), (3.4, 1.6)),
     (3.4, 3.4, 1.16),
 )
 CENTRAL = Section(
     (1.2, 2.4),
     (0.6, 1.2),
-    {
-        Mode.RRR: (2.0, 0.66),
-        Mode.SS: (1.45, 1.0),
-        Mode.SRR: (1.235, 0.618),
-        Mode.RRS: (2.1, 0.87),
-        Mode.RS: (2.15, 1.1),
-    },
+    _named((2.0, 0.66), (1.45, 1.0), (1.235, 0.618), (2.1, 0.87), (2.15, 1.1)),
     (2.2, 2.24, 1.02),
 )
 """Where most regions meet (Fig. 11)."""
@@ -78,13 +60,7 @@ WHOLE_SECTOR = WHOLE._replace(names={**WHOLE.names, Mode.RRS: (2.45, 0.835)})
 CENTRAL_SECTOR = Section(
     (1.05, 2.25),
     (0.52, 1.12),
-    {
-        Mode.RRR: (1.85, 0.58),
-        Mode.SS: (1.25, 0.9),
-        Mode.SRR: (1.098, 0.532),
-        Mode.RRS: (1.9, 0.8),
-        Mode.RS: (1.95, 1.03),
-    },
+    _named((1.85, 0.58), (1.25, 0.9), (1.098, 0.532), (1.9, 0.8), (1.95, 1.03)),
     (2.0, 2.05, 0.95),
 )
 """The same two where voussoirs weigh at their own centroids."""
@@ -99,6 +75,8 @@ NEAR = Section(
     },
 )
 """What is enlarged where arches crowd: the points S and J, and the thin region rsr."""
+LINES = {"divide": "-", "first sliding": "-", "equal angles": ":", "crown hinge": "--"}
+"""Names and dashes of the map's lines."""
 STRIP = (4.12, 4.30)
 """Where unbounded friction is drawn, beyond the largest that is drawn to scale."""
 LETTERS = {"T": (-13, 4), "S": (-19, -12), "J": (-17, 6), "B": (13, -9)}
@@ -125,13 +103,7 @@ def draw_regions(
             friction.place(part.mu), part.bottom, part.top, color=MODES[part.mode].tint, lw=0,
             gid=f"region-{part.mode}",
         )  # fmt: skip
-    lines = (
-        ("divide", shapes.divide, "-"),
-        ("first sliding", shapes.first, "-"),
-        ("equal angles", shapes.equal, ":"),
-        ("crown hinge", shapes.crown, "--"),
-    )
-    for name, curve, style in lines:
+    for (name, style), curve in zip(LINES.items(), shapes.lines.values(), strict=True):
         axes.plot(friction.place(curve.mu), curve.eta, style, color=INK, lw=1.1, gid=name)
     _name_regions(axes, section, shapes, friction)
     marks = [each for each in shapes.landmarks.values() if section.shows(each.mu, each.eta)]
@@ -224,5 +196,8 @@ def _name_regions(
 
 def _within_thin(mu: float, shapes: MapShapes) -> float:
     """Thickness in the middle of the thin region rsr at a friction beyond J."""
-    ends = [np.interp(mu, curve.mu, curve.eta) for curve in (shapes.equal, shapes.crown)]
+    ends = [
+        np.interp(mu, curve.mu, curve.eta)
+        for curve in (shapes.lines["equal"], shapes.lines["crown"])
+    ]
     return float(sum(ends) / 2)

@@ -5,17 +5,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from blocksim.arch import theory
-from blocksim.arch.circular import Weight
+from blocksim.arch.circular import ETA_MAX, Weight
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory import Curve, Landmark, regions
 from blocksim.arch.theory.critical import rotational_thrust
-from blocksim.arch.theory.equations import ETA_MAX, inner_friction
+from blocksim.arch.theory.equations import inner_friction
 from blocksim.arch.theory.map import divide_friction, iso_half_angle, special_angles
 from blocksim.blocks.assembly import Array
 
@@ -34,14 +35,7 @@ LEVEL = 1e-9
 
 @dataclass(frozen=True)
 class FrictionAxis:
-    """How friction is laid off.
-
-    Parameters
-    ----------
-    angle : bool
-        As phi = arctan mu in degrees, up to unbounded friction at 90; else as mu up to
-        `LARGEST_MU`.
-    """
+    """How friction is laid off: as mu, or as an angle arctan mu up to 90 [deg]."""
 
     angle: bool = False
 
@@ -77,15 +71,8 @@ class FrictionAxis:
 COEFFICIENT, ANGLE = FrictionAxis(), FrictionAxis(angle=True)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Region:
-    """What one mode rules, between two thickness ratios at every friction.
-
-    Parameters
-    ----------
-    mode : Mode
-    mu, bottom, top : (k,) float
-    """
+class Region(NamedTuple):
+    """What one mode rules, between two thickness ratios at every friction, (k,) each."""
 
     mode: Mode
     mu: Array
@@ -93,24 +80,19 @@ class Region:
     top: Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class MapShapes:
+class MapShapes(NamedTuple):
     """The map up to the end of its friction axis and eta = 2.
 
     Parameters
     ----------
     regions : tuple of Region
         Of the six modes at finite friction.
-    divide, first, equal, crown : Curve
-        The lines between them, as `regions` of the theory names them.
-    landmarks : dict of str to Landmark
+    lines : dict of str to Curve
+        Between them: `divide`, `first`, `equal`, `crown`, as `regions` of the theory has them.
     """
 
     regions: tuple[Region, ...]
-    divide: Curve
-    first: Curve
-    equal: Curve
-    crown: Curve
+    lines: dict[str, Curve]
     landmarks: dict[str, Landmark]
 
 
@@ -144,17 +126,12 @@ def map_shapes(weight: Weight = "centreline", axis: FrictionAxis = COEFFICIENT) 
         (Mode.RS, over, top, right),
         (Mode.SS, top, np.full_like(mu, 2.0), mu > 0),
     )
-    return MapShapes(
-        regions=tuple(
-            Region(mode=mode, mu=mu[where], bottom=bottom[where], top=ceiling[where])
-            for mode, bottom, ceiling, where in parts
-        ),
-        divide=divide,
-        first=first,
-        equal=equal,
-        crown=crown,
-        landmarks=marks,
+    found = tuple(
+        Region(mode, mu[where], bottom[where], ceiling[where])
+        for mode, bottom, ceiling, where in parts
     )
+    lines = {"divide": divide, "first": first, "equal": equal, "crown": crown}
+    return MapShapes(found, lines, marks)
 
 
 @cache
@@ -187,7 +164,6 @@ def iso_line(
     half_angle : float
         From 0.01 to 3 [rad].
     weight : {"centreline", "sector"}
-    axis : FrictionAxis
 
     Returns
     -------
@@ -222,7 +198,6 @@ def iso_continued(
     half_angle : float
         From 0.01 to alpha_L [rad].
     weight : {"centreline", "sector"}
-    axis : FrictionAxis
 
     Returns
     -------

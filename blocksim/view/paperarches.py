@@ -17,17 +17,7 @@ VOUSSOIRS = 30
 
 
 def paper_arch_figure(number: int) -> Figure:
-    """Draw one of Figs 13-25: on the left by closed form, on the right eqs (15) and (16).
-
-    Parameters
-    ----------
-    number : int
-        13 to 25.
-
-    Returns
-    -------
-    Figure
-    """
+    """Draw one of Figs 13-25: on the left by closed form, on the right eqs (15) and (16)."""
     pictures: list[ArchPicture] = []
     for arch in paper_arches()[number]:
         pictures += [
@@ -38,15 +28,7 @@ def paper_arch_figure(number: int) -> Figure:
 
 
 def complementary_of(arch: PaperArch) -> Complementary:
-    """Solve eqs (15) and (16) for an arch of the paper, at its least thickness.
-
-    Joints are where the continuous arch turns and slides, and evenly between.
-
-    Raises
-    ------
-    ValueError
-        If no thickness stands.
-    """
+    """Solve eqs (15) and (16) on joints where the continuous arch turns and slides."""
     if arch.critical.eta is None:
         message = f"no thickness stands at a half-angle of {arch.half_angle}"
         raise ValueError(message)
@@ -59,13 +41,7 @@ def complementary_of(arch: PaperArch) -> Complementary:
 
 
 def picture_of_voussoirs(arch: PaperArch) -> ArchPicture:
-    """Picture of voussoirs at the least thickness, moving as the complementary problem says.
-
-    Raises
-    ------
-    ValueError
-        If the mode is none of those that the problem has.
-    """
+    """Picture of voussoirs at the least thickness, moving as the complementary problem says."""
     found = complementary_of(arch)
     ways = [each for each in found.modes if each.mode is arch.mode]
     if not ways or arch.critical.eta is None:
@@ -79,7 +55,6 @@ def picture_of_voussoirs(arch: PaperArch) -> ArchPicture:
         f"eqs (15) and (16){besides}",
         subtitle=f"at the same thickness, joints where they turn and slide; strength it lacks "
         f"{found.extra_strength:.0e}, eq. (16) {way.product:.0e}",
-        line=", the only one left",
         half_angle=arch.half_angle,
         eta=arch.critical.eta,
         mu=arch.mu,
@@ -87,7 +62,5 @@ def picture_of_voussoirs(arch: PaperArch) -> ArchPicture:
         thrust=found.thrust,
         crown_moment=found.crown_moment,
         joints=np.concatenate([-found.angles[:0:-1], found.angles]),
-        angles=way.collapse.angles,
-        rates=way.collapse.rates,
-        motions=way.collapse.motions,
+        collapse=way.collapse,
     )

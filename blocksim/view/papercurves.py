@@ -1,5 +1,3 @@
-# matplotlib's own annotations leave keyword arguments open.
-# pyright: reportUnknownMemberType=false
 """Curves of the paper's Figs 3-5."""
 
 from __future__ import annotations
@@ -26,17 +24,7 @@ MOST_FRICTION = 5.0
 
 
 def curve_figure(number: int) -> Figure:
-    """Draw Fig. 3, 4 or 5.
-
-    Parameters
-    ----------
-    number : {3, 4, 5}
-
-    Returns
-    -------
-    Figure
-        With a panel for each quantity, one above the other.
-    """
+    """Draw Fig. 3, 4 or 5: a panel for each quantity, one above the other."""
     rows, draw = {3: (3, _rotational), 4: (2, _inner_sliding), 5: (3, _sliding)}[number]
     figure = Figure(figsize=(7.0, 2.6 * rows), layout="constrained")
     panels = [figure.add_subplot(rows, 1, row + 1) for row in range(rows)]
@@ -126,6 +114,7 @@ def _sliding(panels: list[Axes]) -> None:
                        (end, marks["B"].mu), xytext=(-140, 4),
                        textcoords="offset points")  # fmt: skip
     point = marks["T"]
+    assert point.beta_s is not None  # noqa: S101 - T is of a sliding mode
     # The letter is above the curve: right of a point where it falls, left where it rises.
     for axes, value, aside in zip(
         panels, (point.beta_s, point.mu, point.thrust), (5, -13, 5), strict=True

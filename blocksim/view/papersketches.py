@@ -1,5 +1,3 @@
-# matplotlib's own annotations leave keyword arguments open.
-# pyright: reportUnknownMemberType=false
 """Sketches of the paper's Figs 1, 2 and 12: measures, the rotational mode, a joint."""
 
 from __future__ import annotations
@@ -35,16 +33,7 @@ RATES = (
 
 
 def sketch_figure(number: int) -> Figure:
-    """Draw Fig. 1, 2 or 12.
-
-    Parameters
-    ----------
-    number : {1, 2, 12}
-
-    Returns
-    -------
-    Figure
-    """
+    """Draw Fig. 1, 2 or 12."""
     if number == 12:
         return _joint()
     figure = Figure(figsize=(7.6, 5.2), layout="constrained")
@@ -77,27 +66,23 @@ def _word(axes: Axes, text: str, place: tuple[float, float], colour: str = INK) 
               bbox={"fc": "white", "ec": "none", "pad": 1})  # fmt: skip
 
 
+def _dotted(axes: Axes, end: tuple[float, float], gid: str | None = None) -> None:
+    axes.plot([0, end[0]], [0, end[1]], color=QUIET, lw=0.8, ls=":", gid=gid)
+
+
 def _measures(axes: Axes) -> None:
     """Fig. 1: radius, thickness, half-angle, a section, and the weight."""
     inner, outer = 1 - ETA / 2, 1 + ETA / 2
-    whole = np.column_stack(
-        [
-            np.concatenate([one, two[::-1]])
-            for one, two in zip(
-                _arc(-HALF_ANGLE, HALF_ANGLE, inner),
-                _arc(-HALF_ANGLE, HALF_ANGLE, outer),
-                strict=True,
-            )
-        ]
-    )
+    edges = [np.column_stack(_arc(-HALF_ANGLE, HALF_ANGLE, each)) for each in (inner, outer)]
+    whole = np.concatenate([edges[0], edges[1][::-1]])
     axes.add_patch(Polygon(whole, fc=STONE, ec=INK, lw=1.5, alpha=0.6, gid="arch"))
     axes.plot(*_arc(-HALF_ANGLE, HALF_ANGLE, 1.0), color=INK, lw=0.9, ls=(0, (8, 2, 1, 2)),
               gid="centreline")  # fmt: skip
-    axes.plot([0, 0], [0, outer + 0.1], color=QUIET, lw=0.8, ls=":")
+    _dotted(axes, (0, outer + 0.1))
     for angle in (-HALF_ANGLE, HALF_ANGLE):
-        axes.plot(*zip((0, 0), _at(angle, inner), strict=True), color=QUIET, lw=0.8, ls=":")
+        _dotted(axes, _at(angle, inner))
     axes.plot(*zip(_at(SECTION, inner), _at(SECTION, outer), strict=True), color=INK, lw=1.0)
-    axes.plot(*zip((0, 0), _at(SECTION, inner), strict=True), color=QUIET, lw=0.8, ls=":")
+    _dotted(axes, _at(SECTION, inner))
     for stop, radius, name in ((HALF_ANGLE, 0.3, r"$\alpha$"), (SECTION, 0.55, r"$\beta$"),
                                (-HALF_ANGLE, 0.3, r"$\alpha$")):  # fmt: skip
         axes.plot(*_arc(0, stop, radius), color=INK, lw=1.0, gid=f"angle {name}")
@@ -135,12 +120,11 @@ def _rotational(axes: Axes) -> None:
         _arrow(axes, (side * (outer + 0.42), 0.0), foot, "reaction H", THRUST)
         _word(axes, "$V$", (side * (outer - 0.08), -0.3), THRUST)
         _word(axes, "$H$", (side * (outer + 0.3), 0.09), THRUST)
-    axes.plot([0, 0], [0, outer], color=QUIET, lw=0.8, ls=":")
-    axes.plot(*zip((0, 0), _at(beta, 1 - eta / 2), strict=True), color=QUIET, lw=0.8, ls=":",
-              gid="ray of the inner hinge")  # fmt: skip
+    _dotted(axes, (0, outer))
+    _dotted(axes, _at(beta, 1 - eta / 2), "ray of the inner hinge")
     axes.plot(*_arc(0, beta, 0.4), color=INK, lw=1.0, gid="angle beta_r")
     _word(axes, r"$\beta=\beta_r$", _at(beta / 2, 0.55))
-    axes.plot([0, 1], [0, 0], color=QUIET, lw=0.8, ls=":")
+    _dotted(axes, (1, 0))
     _arrow(axes, (0.0, 0.0), _at(-0.75, 1.0), "radius")
     _word(axes, "$r$", _at(-0.75, 0.55))
     _arrow(axes, _at(-1.2, 1 - eta / 2), _at(-1.2, outer), "thickness", style="<|-|>")
@@ -199,10 +183,6 @@ def moved_block(kind: int, points: Array) -> Array:
         intrados, slides outwards, inwards.
     points : (k, 2) float
         Along the arch from the joint to the crown, and outwards from the centreline.
-
-    Returns
-    -------
-    (k, 2) float
     """
     if kind < 2:
         edge = np.array([0.0, HALF_DEPTH if kind == 0 else -HALF_DEPTH])

@@ -19,7 +19,6 @@ class Placing:
 
     Parameters
     ----------
-    recording : Recording
     sides : int
         Corners that a piece is to have at least.
 
@@ -135,14 +134,7 @@ def _turned(turns: Array, points: Array) -> Array:
 
 
 def depth_of(points: Array, outline: Array) -> Array:
-    """How far points are inside convex outlines, below 0 outside.
-
-    Parameters
-    ----------
-    points : (..., 2) float
-    outline : (..., sides, 2) float
-        Counter-clockwise; its leading axes go with those of the points.
-    """
+    """How far points (..., 2) are inside convex outlines (..., sides, 2), below 0 outside."""
     along = np.roll(outline, -1, axis=-2) - outline
     length = np.linalg.norm(along, axis=-1)
     inward = np.stack([-along[..., 1], along[..., 0]], axis=-1)
@@ -153,13 +145,7 @@ def depth_of(points: Array, outline: Array) -> Array:
 
 
 def distance_of(one: Array, other: Array) -> Array:
-    """Distance between two sides that do not cross: an end of one is nearest to the other.
-
-    Parameters
-    ----------
-    one, other : (sides, 2, 2) float
-        Their ends.
-    """
+    """Distance of sides that do not cross, (sides, 2, 2): that of an end of one."""
     found = np.full(len(one), np.inf)
     for ends, side in ((one, other), (other, one)):
         along = side[:, 1] - side[:, 0]

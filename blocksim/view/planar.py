@@ -23,21 +23,7 @@ SEAM = 0.6
 
 
 class PlanarView:
-    """Draws the moments of a stage into a panel.
-
-    Parameters
-    ----------
-    stage : Stage
-    panel : Panel
-    shown : (k, 3) float
-        Points that find place in the panel, x from the middle of the blocks at rest; the
-        lowest lie on the ground.
-
-    Attributes
-    ----------
-    still : list of Shape
-        What stays the same.
-    """
+    """Draws moments of a stage into a panel; `shown`, from the middle, finds place in it."""
 
     def __init__(self, stage: Stage, panel: Panel, shown: Array) -> None:
         self._stage, self._panel = stage, panel
@@ -56,16 +42,21 @@ class PlanarView:
         self._tones = stone_tones(len(stage.assembly.blocks))
         self.still = self._surroundings()
 
-    def scale_bar(self, length: float, words: str) -> tuple[list[Shape], list[Label]]:
+    def scale_bar(
+        self, length: float, words: str, size: float
+    ) -> tuple[list[Shape], list[Label]]:
         """Draw a bar of a length [r] on the ground, with its words."""
         end = self._panel.x + self._panel.width - 0.03 * self._panel.width
-        height = self._origin[1] + self._stage.ground * self._scale - 14
+        height = self._origin[1] + self._stage.ground * self._scale - 14 * size
         start = end - length * self._scale
         ink = colour(INK)
         bar = np.array([[start, height], [end, height]])
-        ticks = [np.array([[x, height - 4], [x, height + 4]]) for x in (start, end)]
-        shapes = [Shape(line, edge=ink, width=2, closed=False) for line in (bar, *ticks)]
-        return shapes, [Label((start + end) / 2, height - 20, words, size=13, across="center")]
+        ticks = [
+            np.array([[x, height - 4 * size], [x, height + 4 * size]]) for x in (start, end)
+        ]
+        shapes = [Shape(line, edge=ink, width=2 * size, closed=False) for line in (bar, *ticks)]
+        label = Label((start + end) / 2, height - 20 * size, words, 13 * size, across="center")
+        return shapes, [label]
 
     def shapes(self, moment: Moment) -> list[Shape]:
         """Draw a moment."""
@@ -163,15 +154,9 @@ class PlanarView:
 
 
 def _outline(corners: Array) -> Array:
-    """Outline of a block as seen from the front, (k, 2).
-
-    Parameters
-    ----------
-    corners : (2, sides, 3) float
-        Of its near and its far face.
-    """
+    """Outline of a prism, (2, sides, 3), as seen from the front, (k, 2)."""
     near, far = corners[..., :2]
-    if np.allclose(near, far, rtol=0, atol=1e-9):
+    if (np.abs(near - far) <= 1e-9).all():
         return near
     both = corners[..., :2].reshape(-1, 2)
     return both[ConvexHull(both).vertices]

@@ -1,11 +1,8 @@
-# matplotlib's own annotations leave keyword arguments open.
-# pyright: reportUnknownMemberType=false
 """What was read of a drawing, by its names, and what was refused, where it is."""
 
 from __future__ import annotations
 
 import textwrap
-from dataclasses import replace
 
 import matplotlib as mpl
 import numpy as np
@@ -14,7 +11,7 @@ from matplotlib.figure import Figure
 
 from blocksim.common.errors import InputError
 from blocksim.common.words import printable
-from blocksim.reading.drawing import Drawing, Shape, plain
+from blocksim.reading.drawing import Drawing, plain
 from blocksim.view.drawing import literal
 from blocksim.view.style import FONT, INK, QUIET, STONE
 
@@ -33,7 +30,6 @@ def read_figure(drawing: Drawing, refusal: InputError | None = None) -> Figure:
 
     Parameters
     ----------
-    drawing : Drawing
     refusal : InputError, optional
         What was said of it; blocks that it names are marked.
     """
@@ -70,7 +66,7 @@ def read_figure(drawing: Drawing, refusal: InputError | None = None) -> Figure:
                           gid=f"refused-{number}")  # fmt: skip
                 axes.annotate(str(number), place, xytext=(6, 6), textcoords="offset points",
                               color=WRONG, zorder=7)  # fmt: skip
-            said.append(f"{number}  {_said(each.shape, each.at)}: {each.why}")
+            said.append(f"{number}  {each.said}: {each.why}")
         if not said:
             said = ["nothing was refused"]
         more = len(said) - MOST
@@ -81,8 +77,3 @@ def read_figure(drawing: Drawing, refusal: InputError | None = None) -> Figure:
         figure.text(0.03, 0.19, "\n".join(folded), va="top", fontsize=7,
                     color=WRONG if refusal is not None else QUIET)  # fmt: skip
     return figure
-
-
-def _said(shape: Shape, at: tuple[float, float] | None) -> str:
-    """Name what was refused, with the place where it is."""
-    return shape.said if at is None else replace(shape, corners=[at]).said

@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from blocksim.ask.check import Check
 from blocksim.ask.rest import rest_words
 from blocksim.blocks.assembly import Array
@@ -20,7 +18,7 @@ from blocksim.limit.carried import Carried
 from blocksim.view.drawing import friction_words, loading_words
 from blocksim.view.structure import supports_shown
 from blocksim.view.thrustlines import is_chained, near_blocks, thrust_lines, thrust_of
-from blocksim.view.units import ForceUnit, force_unit, unit_weight
+from blocksim.view.units import ForceUnit, common_depth, force_unit, unit_weight
 
 STEPS = (1.0, 2.0, 2.5, 5.0)
 """Scales that are drawn to, times powers of ten."""
@@ -44,16 +42,7 @@ A4 = (Paper("A4", 297.0, 210.0), Paper("A4", 210.0, 297.0))
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ThrustLine:
-    """A line of thrust, or several where they meet.
-
-    Parameters
-    ----------
-    name : {"min", "max", "safest"}
-    words : str
-        What the legend says.
-    paths : tuple of (k, 2) float
-        [m]
-    """
+    """A line of thrust (min, max or safest), or several where they meet, (k, 2) each [m]."""
 
     name: str
     words: str
@@ -72,9 +61,8 @@ class Titles:
     @property
     def said(self) -> tuple[tuple[str, str], ...]:
         """Each line of it, and what it is called."""
-        found = {"project": self.project, "part": self.part,
-                 "engineer": self.engineer, "date": self.date}  # fmt: skip
-        return tuple((name, printable(value)) for name, value in found.items() if value)
+        found = vars(self).items()
+        return tuple((name, printable(value)) for name, value in found if value)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -83,12 +71,8 @@ class Sheet:
 
     Parameters
     ----------
-    problem : Problem
-    title : str
     facts : tuple of str
         Lines below the title.
-    unit : ForceUnit
-    lines : tuple of ThrustLine
     forces : (joints, 2, 2) float or None
         Of the state of greatest margin; drawn at each joint where there are no lines.
     thrust : (int, str) or None
@@ -96,10 +80,10 @@ class Sheet:
     reactions : tuple of Reaction
         In the state of greatest margin.
     mechanism : (blocks, 3) float or None
-    joint_states : tuple of JointState or None
     supports : tuple of tuple of (k, 2) float
         Convex parts of each support near the blocks [m].
-    carried : Carried or None
+    pressed : bool
+        Whether pressures along joints are drawn, in place of dimensions.
     """
 
     problem: Problem
@@ -115,6 +99,13 @@ class Sheet:
     supports: tuple[tuple[Array, ...], ...] = field(default_factory=tuple)
     carried: Carried | None = None
     titles: Titles = field(default_factory=Titles)
+    pressed: bool = False
+
+    @property
+    def pressures(self) -> Sheet:
+        """The same, for a drawing of pressures along joints alone."""
+        lines = tuple(line for line in self.lines if line.name == "safest")
+        return replace(self, lines=lines, forces=None, thrust=None, reactions=(), pressed=True)
 
 
 def sheet_of(
@@ -131,12 +122,10 @@ def sheet_of(
 
     Parameters
     ----------
-    problem : Problem
     verdict : str
         The answer of a check, in words.
     mechanism : (blocks, 3) float, optional
         Rates x, y (in units of the size) and rotation; drawn enlarged.
-    joint_states : sequence of JointState, optional
     forces : (joints, 2, 2) float, optional
         Contact forces to draw where nothing is known of what it carries.
     carried : Carried, optional
@@ -161,13 +150,13 @@ def sheet_of(
         unit=unit,
         mechanism=mechanism,
         joint_states=None if joint_states is None else tuple(joint_states),
-        supports=tuple(tuple(parts) for parts in supports_shown(problem)),
+        supports=() if problem.in_space else tuple(map(tuple, supports_shown(problem))),
         carried=carried,
         **found,
     )
 
 
-def answer_sheet(answer: Check, titles: Titles | None = None) -> Sheet:
+def answer_sheet(answer: Check[Any], titles: Titles | None = None) -> Sheet:
     """Collect what is drawn of an answer, with what its title block says."""
     mode = answer.arch and answer.arch.mode
     named = f", mode {mode}" if mode else ""
@@ -264,9 +253,9 @@ def built_words(problem: Problem) -> list[str]:
     heavy = unit_weight(problem)
     if heavy is not None:
         words.append(f"unit weight {heavy / 1e3:.4g} kN/m\N{SUPERSCRIPT THREE}")
-    depths = problem.assembly.depths * problem.assembly.size
-    if np.ptp(depths) <= 1e-9 * depths.max():
-        words.append(f"depth {depths[0]:.4g} m")
+    depth = common_depth(problem)
+    if depth is not None:
+        words.append(f"depth {depth:.4g} m")
     return words + loading_words(problem)
 
 

@@ -14,17 +14,17 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.closing import marked_gaps
 from blocksim.blocks.joints import JointState
-from blocksim.blocks.outlines import signed_area
-from blocksim.blocks.road import fill_of
+from blocksim.blocks.road import profile_of, road_of
 from blocksim.common.errors import InputError
 from blocksim.common.later import require_library
 from blocksim.common.version import __version__
 from blocksim.common.words import printable
 from blocksim.limit import in_world
-from blocksim.view.arrows import FAINT, forces_of
+from blocksim.view.arrows import FAINT, acting_on
 from blocksim.view.dimensions import Length, dimensions_of
-from blocksim.view.drawing import HINGES, outer_sides
+from blocksim.view.drawing import HINGES, outline
 from blocksim.view.sheet import A4, Sheet, scale_for, scale_words
+from blocksim.view.structure import fill_outlines
 
 LAYERS = {
     "blocks": (7, "CONTINUOUS", 35),
@@ -40,6 +40,8 @@ LAYERS = {
     "loads-live": (1, "CONTINUOUS", 25),
     "reactions": (7, "CONTINUOUS", 25),
     "road": (8, "DASHED2", 18),
+    "fill": (9, "CONTINUOUS", 13),
+    "backing": (9, "DASHED2", 13),
     "dimensions": (7, "CONTINUOUS", 13),
     "text": (7, "CONTINUOUS", 18),
     "title": (7, "CONTINUOUS", 25),
@@ -57,17 +59,10 @@ ROOM = np.array([0.75, 0.55])
 """Shares of a page of A4 that what is drawn takes."""
 DASH = 0.4
 """Factor on the dashes of line types, whose own are in inches [mm]."""
-MEETS = 1e-9
-"""Share of a side within which ends of sides are the same corner."""
 
 
 def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
     """Write a sheet as DXF in metres.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    file : BinaryIO
 
     Raises
     ------
@@ -86,6 +81,30 @@ def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
     for name, (colour, dashes, width) in LAYERS.items():
         document.layers.add(name, color=colour, linetype=dashes, lineweight=width)
     space: Any = document.modelspace()
+    shown = _bodies(space, sheet)
+    for line in sheet.lines:
+        for path in line.paths:
+            _polyline(space, path, f"thrust-{line.name}", close=False)
+    span = np.ptp(shown, axis=0)
+    paper = np.array([A4[0].width, A4[0].height])
+    scale = scale_for(span, ROOM * paper)
+    # Dashes are of paper.
+    document.header["$LTSCALE"] = DASH * scale / 1e3
+    _numbers(space, sheet, scale)
+    _forces(space, sheet, scale)
+    _road(space, sheet, shown)
+    _states(space, sheet, scale)
+    _gaps(space, sheet, scale)
+    _dimensions(space, sheet, shown, scale)
+    foot = _words(space, sheet, shown, scale)
+    _title(space, sheet, float(shown[:, 0].max()), foot, scale)
+    text = io.StringIO()
+    document.write(text)
+    file.write(text.getvalue().encode(document.output_encoding, "dxfreplace"))
+
+
+def _bodies(space: Any, sheet: Sheet) -> Array:
+    """Draw blocks, supports and joints; return corners of all of them."""
     problem = sheet.problem
     corners = [
         _named(block.polygons, f"block {block.name or index}")
@@ -104,26 +123,7 @@ def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
     for joint in problem.assembly.joints:
         if not joint.is_corner:
             space.add_line(joint.inner, joint.outer, dxfattribs={"layer": "joints"})
-    for line in sheet.lines:
-        for path in line.paths:
-            _polyline(space, path, f"thrust-{line.name}", close=False)
-    shown = np.concatenate([*corners, *(part for parts in sheet.supports for part in parts)])
-    span = np.ptp(shown, axis=0)
-    paper = np.array([A4[0].width, A4[0].height])
-    scale = scale_for(span, ROOM * paper)
-    # Dashes are of paper.
-    document.header["$LTSCALE"] = DASH * scale / 1e3
-    _numbers(space, sheet, scale)
-    _forces(space, sheet, scale)
-    _road(space, sheet, shown)
-    _states(space, sheet, scale)
-    _gaps(space, sheet, scale)
-    _dimensions(space, sheet, shown, scale)
-    foot = _words(space, sheet, shown, scale)
-    _title(space, sheet, float(shown[:, 0].max()), foot, scale)
-    text = io.StringIO()
-    document.write(text)
-    file.write(text.getvalue().encode(document.output_encoding, "dxfreplace"))
+    return np.concatenate([*corners, *(part for parts in sheet.supports for part in parts)])
 
 
 def _named(polygons: tuple[Array, ...], name: str) -> Array:
@@ -187,11 +187,13 @@ def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
             turn = math.degrees(math.atan2(each.along[1], each.along[0]))
             made = space.add_linear_dim(
                 base=tuple(each.at),
-                p1=tuple(each.start),
-                p2=tuple(each.end),
+                p1=tuple(each.ends[0]),
+                p2=tuple(each.ends[1]),
                 # Words that stand on their heads are turned round.
                 angle=turn - 180 if turn > 90 else turn,
-                location=tuple(each.end + each.along * 20 * scale / 1e3) if beside else None,
+                location=tuple(each.ends[1] + each.along * 20 * scale / 1e3)
+                if beside
+                else None,
                 text=f"{each.what} <> m{note}",
                 override=sizes,
                 dxfattribs=layer,
@@ -257,12 +259,11 @@ def _numbers(space: Any, sheet: Sheet, scale: float) -> None:
 
 def _forces(space: Any, sheet: Sheet, scale: float) -> None:
     """Draw loads and reactions as arrows that end where they act, those of a kind to scale."""
-    problem = sheet.problem
-    loads = {
-        f"loads-{name}": [each for load in given for each in forces_of(problem, load)]
-        for name, given in (("dead", problem.dead), ("live", problem.live))
+    arrows: dict[str, list[tuple[Array, Array]]] = {
+        "reactions": [(each.point, each.force) for each in sheet.reactions]
     }
-    arrows = loads | {"reactions": [(each.point, each.force) for each in sheet.reactions]}
+    for kind, point, force in acting_on(sheet.problem):
+        arrows.setdefault(f"loads-{kind}", []).append((point, force))
     for layer, found in arrows.items():
         largest = max((float(np.hypot(*force)) for _, force in found), default=0.0)
         for tip, force in found:
@@ -279,13 +280,13 @@ def _forces(space: Any, sheet: Sheet, scale: float) -> None:
 
 
 def _road(space: Any, sheet: Sheet, shown: Array) -> None:
-    """Draw the level of the road over fill, and where x is 0 on it."""
-    fill = fill_of(sheet.problem)
-    if fill is None and not sheet.problem.road:
+    """Draw fill, and the level of the road with where x is 0 on it."""
+    problem, level = sheet.problem, road_of(sheet.problem)
+    if level is None and not problem.road:
         return
-    blocks = sheet.problem.assembly.blocks
-    top = max(float(block.vertices[:, 1].max()) for block in blocks)
-    top += 0.0 if fill is None else fill.height
+    for area, is_backing in fill_outlines(problem):
+        _polyline(space, area, "backing" if is_backing else "fill", close=True)
+    top = float(profile_of(problem.assembly).ends[..., 1].max()) if level is None else level
     low, high = float(shown[:, 0].min()), float(shown[:, 0].max())
     layer = {"layer": "road"}
     space.add_line((low, top), (high, top), dxfattribs=layer)
@@ -316,31 +317,3 @@ def _literal(words: str) -> str:
     """Return text of a stranger in which programs that draw find no codes of theirs."""
     # %% begins signs, ^ and a letter characters that control, a backslash any other.
     return printable(words).replace("%%", "% %").replace("^", "^ ").replace("\\", "/")
-
-
-def outline(polygons: tuple[Array, ...]) -> Array:
-    """Return the outline of convex polygons that touch, counter-clockwise.
-
-    Raises
-    ------
-    ValueError
-        If it is not one closed line: two bodies, or one with a hole.
-    """
-    if len(polygons) == 1:
-        return polygons[0]
-    sides = outer_sides(polygons)
-    near = MEETS * max(float(np.hypot(*(side[1] - side[0]))) for side in sides)
-    left, corners = sides[1:], [sides[0][0], sides[0][1]]
-    while left:
-        ahead = next(
-            (k for k, side in enumerate(left) if np.hypot(*(side[0] - corners[-1])) < near),
-            None,
-        )
-        if ahead is None:
-            break
-        corners.append(left.pop(ahead)[1])
-    closed = np.array(corners)
-    if left or np.hypot(*(closed[-1] - closed[0])) > near or signed_area(closed[:-1]) <= 0:
-        message = "the outline is not one closed line"
-        raise ValueError(message)
-    return closed[:-1]

@@ -1,5 +1,3 @@
-# matplotlib's own annotations leave keyword arguments open.
-# pyright: reportUnknownMemberType=false
 """A sheet on paper: drawn to scale, its axes as large as the page, in metres."""
 
 from __future__ import annotations
@@ -11,7 +9,6 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -20,21 +17,16 @@ from matplotlib.transforms import Bbox
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.outlines import signed_area
+from blocksim.blocks.road import profile_of, road_of
 from blocksim.common.version import __version__
 from blocksim.common.words import printable
 from blocksim.limit import in_world
-from blocksim.view.arrows import arrow, draw_forces, draw_gravity, draw_loads
+from blocksim.view.arrows import arrow, draw_forces, draw_gravity, draw_pressures, draw_use
 from blocksim.view.dimensions import Angle, Length, dimensions_of, half_angle_of
-from blocksim.view.drawing import literal, round_length
+from blocksim.view.drawing import literal, new_figure, round_length
 from blocksim.view.sheet import Sheet, scale_words
 from blocksim.view.sheetlayout import COLUMNS, LINE, MARGIN, TITLE, Layout, layout_of, wrapped
-from blocksim.view.structure import (
-    draw_blocks,
-    draw_mechanism,
-    draw_states,
-    draw_supports,
-    edge_width,
-)
+from blocksim.view.structure import draw_blocks, draw_structure, draw_supports
 from blocksim.view.style import FONT, INK, QUIET, THRUST
 from blocksim.view.thrustlines import force_sizes
 
@@ -69,51 +61,26 @@ def sheet_figure(
 
     Parameters
     ----------
-    sheet : Sheet
     column : (width, height), optional
         Of a column that it is put into [mm], the height at most. By default it is a page of
         A4, across or upright.
     bare : bool
         Without title, facts and version: a page says them.
-
-    Returns
-    -------
-    Figure
     """
     problem = sheet.problem
     with mpl.rc_context({**FONT, "font.size": SMALL, "hatch.linewidth": 0.5}):
-        figure = Figure()
-        FigureCanvasAgg(figure)
+        figure = new_figure()
         axes = figure.add_axes((0, 0, 1, 1))
         axes.axis("off")
-        corners = np.concatenate([block.vertices for block in problem.assembly.blocks])
-        extent = float(np.ptp(corners, axis=0).max())
-        # What is drawn so far has to find room.
-        shown = [corners, *draw_supports(axes, problem)]
-        draw_blocks(axes, problem, 0.8 * edge_width(problem, extent))
-        if sheet.mechanism is not None:
-            shown += draw_mechanism(axes, problem, sheet.mechanism, extent)
-        if sheet.joint_states is not None:
-            draw_states(axes, problem, sheet.joint_states)
-        if sheet.forces is not None:
-            shown += draw_forces(axes, problem, sheet.forces, extent)
-        shown += draw_loads(axes, problem, extent)
-        shown += draw_gravity(axes, problem, np.concatenate(shown))
-        _draw_band(axes, sheet)
-        for line in sheet.lines:
-            _draw_line(axes, line.name, line.words, line.paths)
-            shown += line.paths
-        if sheet.reactions and sheet.forces is None:
-            words = "reaction at greatest margin"
-            axes.plot([], [], color=INK, lw=1.2, marker=6, ms=5, label=words)
-        points = np.concatenate(shown)
+        points = _draw_drawing(axes, sheet)
         low, high = points.min(axis=0), points.max(axis=0)
         entries = _entries(axes)
         layout = layout_of(sheet, low, high, len(entries), column, bare=bare)
         figure.set_size_inches(layout.paper.width / INCH, layout.paper.height / INCH)
         axes.set_xlim(float(layout.low[0]), float(layout.high[0]))
         axes.set_ylim(float(layout.low[1]), float(layout.high[1]))
-        for each in dimensions_of(problem, points, layout.scale):
+        measured = [] if sheet.pressed else dimensions_of(problem, points, layout.scale)
+        for each in measured:
             if isinstance(each, Length):
                 _draw_length(axes, each, layout)
             else:
@@ -129,6 +96,33 @@ def sheet_figure(
                           borderpad=0, borderaxespad=0, fontsize=SMALLER,
                           handlelength=3.2, labelspacing=0.45)  # fmt: skip
     return figure
+
+
+def _draw_drawing(axes: Axes, sheet: Sheet) -> Array:
+    """Draw all that is in metres; return points that have to find room."""
+    problem = sheet.problem
+    used = None if sheet.carried is None else sheet.carried.resultants
+    if sheet.pressed and used is not None:
+        shown = draw_supports(axes, problem)
+        draw_blocks(axes, problem, 0.4)
+        shown += [block.vertices for block in problem.assembly.blocks]
+        shown += draw_pressures(axes, problem, used)
+    else:
+        shown = draw_structure(axes, problem, sheet.mechanism, sheet.joint_states)
+        extent = float(np.ptp(shown[0], axis=0).max())
+        if sheet.forces is not None:
+            shown += draw_forces(axes, problem, sheet.forces, extent)
+        shown += draw_gravity(axes, problem, np.concatenate(shown))
+        _draw_band(axes, sheet)
+    if used is not None and sheet.mechanism is None:
+        draw_use(axes, problem, used)
+    for line in sheet.lines:
+        _draw_line(axes, line.name, line.words, line.paths)
+        shown += line.paths
+    if sheet.reactions and sheet.forces is None:
+        words = "reaction at greatest margin"
+        axes.plot([], [], color=INK, lw=1.2, marker=6, ms=5, label=words)
+    return np.concatenate(shown)
 
 
 def _entries(axes: Axes) -> dict[str, Patch | Line2D]:
@@ -180,26 +174,28 @@ def _draw_length(axes: Axes, each: Length, layout: Layout) -> None:
                   gid=f"{gid}-end")  # fmt: skip
     axes.plot(*line.T, color=INK, lw=0.6, zorder=9, gid=gid)
     middle, long = line.mean(axis=0), each.value / mm
-    gid += "-words"
     if each.what == "thickness":
         # Beyond the outer end, on the side to which it leads.
         tail = line[1] + along * 6 * mm
         axes.plot(*np.array([line[1], tail]).T, color=INK, lw=0.6, zorder=9,
                   gid="dimension-thickness-lead")  # fmt: skip
         side = -1.0 if along[0] < 0 else 1.0
-        layout.write(axes, tail + along * mm, each.words, (side, 0.0), va="center", gid=gid,
-                     ha="right" if side < 0 else "left")  # fmt: skip
+        at, away = tail + along * mm, (side, 0.0)
+        style = {"va": "center", "ha": "right" if side < 0 else "left"}
     elif abs(along[0]) > 0.5:
         side = 1.0 if each.what == "width" else -1.0
-        layout.write(axes, middle + np.array([0.0, side]) * mm, each.words, (0.0, side),
-                     ha="center", va="bottom" if side > 0 else "top", gid=gid)  # fmt: skip
+        at, away = middle + np.array([0.0, side]) * mm, (0.0, side)
+        style = {"ha": "center", "va": "bottom" if side > 0 else "top"}
     elif long > LONG:
         # Along the line, lest they go into what is drawn beside it.
-        layout.write(axes, middle - np.array([mm, 0.0]), each.words, (0.0, 1.0), ha="right",
-                     va="center", rotation=90, gid=gid)  # fmt: skip
+        at, away = middle - np.array([mm, 0.0]), (0.0, 1.0)
+        style = {"ha": "right", "va": "center", "rotation": 90}
     else:
-        layout.write(axes, middle + np.array([1.5 * mm, 0.0]), each.words, (1.0, 0.0),
-                     ha="left", va="center", gid=gid)  # fmt: skip
+        # Low, where an arch is wide.
+        low = line[line[:, 1].argmin()]
+        at, away = low + (middle - low) / 2 + np.array([1.5 * mm, 0.0]), (1.0, 0.0)
+        style = {"ha": "left", "va": "center"}
+    layout.write(axes, at, each.words, away, gid=f"{gid}-words", **style)
 
 
 def _draw_angle(axes: Axes, each: Angle, layout: Layout) -> None:
@@ -242,8 +238,9 @@ def _draw_numbers(axes: Axes, sheet: Sheet, layout: Layout) -> None:
         x, y = block.centre.tolist()
         axes.text(x, y, literal(name), ha="center", va="center", fontsize=NUMBERED,
                   color=QUIET, zorder=7, gid=f"number-{index}", clip_on=True)  # fmt: skip
-    if problem.road:
-        top = max(float(block.vertices[:, 1].max()) for block in problem.assembly.blocks)
+    if problem.road and not sheet.pressed:
+        level = road_of(problem)
+        top = float(profile_of(problem.assembly).ends[..., 1].max()) if level is None else level
         axes.plot(0.0, top, marker=7, ms=5, color=INK, zorder=9, gid="origin")
         layout.write(axes, np.array([0.0, top + 2 * mm]), "x = 0", (0.0, 1.0), ha="center",
                      va="bottom", fontsize=SMALLER, gid="origin-words")  # fmt: skip
@@ -266,10 +263,7 @@ def _draw_thrust(axes: Axes, sheet: Sheet, layout: Layout, top: float) -> None:
 
 
 def _draw_reactions(axes: Axes, sheet: Sheet, layout: Layout, low: float) -> None:
-    """Draw what supports bear as arrows that end where they act, with their parts in words.
-
-    Where contact forces are drawn, words alone.
-    """
+    """Draw what supports bear as arrows, with words; words alone where forces are drawn."""
     sizes = [float(np.hypot(*each.force)) for each in sheet.reactions]
     largest, unit, mm = max(sizes, default=0.0), sheet.unit, layout.mm
     for index, (each, size) in enumerate(zip(sheet.reactions, sizes, strict=True)):

@@ -1,5 +1,3 @@
-# matplotlib's own annotations leave keyword arguments open.
-# pyright: reportUnknownMemberType=false
 """Where a sheet's drawing and its words lie on paper."""
 
 from __future__ import annotations
@@ -39,7 +37,6 @@ class Layout:
 
     Parameters
     ----------
-    paper : Paper
     scale : float
         A millimetre on paper is so many millimetres.
     low : (2,) float
@@ -94,6 +91,9 @@ def layout_of(
 ) -> Layout:
     """Choose paper and scale so that all has room, and lay the drawing in the middle of it."""
     above, below = ABOVE, BELOW if sheet.reactions else BARE + SIDE / 2
+    aside = SIDE
+    if sheet.pressed:
+        above = below = aside = BARE
     edge = MARGIN if column is None else NARROW
     tries: list[Layout] = []
     for paper in A4 if column is None else (Paper("", *column),):
@@ -104,13 +104,13 @@ def layout_of(
         foot = max(edge + rows, bar + LINE) + 2
         lines = sum(len(wrapped(fact, paper)) for fact in sheet.facts)
         head = edge + TITLE + LINE * lines + 2 if not bare else 0.0
-        room = np.array([paper.width - 2 * (edge + SIDE), tall - head - foot - above - below])
+        room = np.array([paper.width - 2 * (edge + aside), tall - head - foot - above - below])
         scale = scale_for(high - low, room)
         drawn = 1e3 * (high - low) / scale
         if column is not None:
             tall -= float(room[1] - drawn[1])
             room[1] = drawn[1]
-        corner = np.array([edge + SIDE, foot + below]) + (room - drawn) / 2
+        corner = np.array([edge + aside, foot + below]) + (room - drawn) / 2
         tries.append(
             Layout(
                 paper=Paper(paper.name, paper.width, tall),

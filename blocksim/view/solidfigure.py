@@ -1,102 +1,68 @@
 """A problem in space in perspective, with its answer and how it begins to fall."""
-# pyright: reportUnknownMemberType=false
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
-from scipy.spatial.transform import Rotation
 
-from blocksim.blocks.assembly import Array
-from blocksim.blocks.joints import JointState
+from blocksim.common.version import __version__
+from blocksim.engines.base import Quality, Settings
 from blocksim.limit.space import SpatialEquilibrium
-from blocksim.view.drawing import literal, state_of_any, words_of
-from blocksim.view.solidjoints import force_lines, marks_of
-from blocksim.view.solidscene import Camera, blocks_of, moving_box, supports_of
-from blocksim.view.style import FONT, INK, PAPER, QUIET, THRUST, VERDICTS
+from blocksim.simulation.recording import Recording
+from blocksim.view.canvas import Canvas, Label, Panel, Shape, colour
+from blocksim.view.captions import legend_of, title
+from blocksim.view.solidscene import UPRIGHT, WAY, force_lines, told
+from blocksim.view.solidstage import SolidStage
+from blocksim.view.spatial import SpatialView
+from blocksim.view.style import QUIET, THRUST
 
 if TYPE_CHECKING:
     from blocksim.ask.check import Check
-    from blocksim.blocks.space.problem import SpatialProblem
+    from blocksim.blocks.space.assembly import SpatialAssembly
 
-WAY = 0.15
-"""How far the mechanism is drawn: its largest way in units of the size."""
+WIDE, TALL = 1080, 810
+HEAD, FOOT = 74.0, 44.0
 
 
-def solid_figure(answer: Check[SpatialProblem]) -> Figure:
-    """Draw blocks in space; of what falls, moved as its collapse begins.
-
-    Parameters
-    ----------
-    answer : Check
-
-    Returns
-    -------
-    Figure
-    """
+def solid_figure(answer: Check[SpatialAssembly]) -> Figure:
+    """Draw blocks in space; of what falls, moved as its collapse begins."""
     assembly, rates = answer.problem.assembly, answer.mechanism
-    low, high = moving_box(assembly)
-    if rates is None:
-        rates = np.zeros((len(assembly.blocks), 6))
-    turns = Rotation.from_rotvec(WAY * rates[:, 3:]).as_matrix()
-    marks = marks_of(assembly, [each.state for each in answer.joints])
-    pieces = supports_of(assembly, low, high)
-    pieces += blocks_of(assembly, turns, WAY * assembly.size * rates[:, :3], marks)
-    camera = Camera(low, high)
-    with mpl.rc_context(FONT):
-        figure = _figure(answer, *camera.painted(pieces))
-        static = answer.static
-        forces = static.point_forces if isinstance(static, SpatialEquilibrium) else None
-        if forces is not None:
-            _draw_forces(figure, answer.problem, forces, camera)
-    return figure
+    rest = np.zeros((len(assembly.blocks), 6))
+    rest[:, :3] = assembly.centres / assembly.size
+    moved = 0 * rest if rates is None else WAY * rates
+    run = Recording(
+        problem=answer.problem, engine=answer.method, engine_version=__version__,
+        settings=Settings(step=1.0, sweeps=1, hold_sweeps=1), times=np.array([0.0, 1.0]),
+        poses=np.stack([rest, rest + moved]), quality=Quality(),
+    )  # fmt: skip
+    stage, panel = SolidStage(run), Panel(0, FOOT, WIDE, TALL - HEAD - FOOT)
+    view = SpatialView(stage, panel, stage.swept - [stage.middle, 0.0, 0.0])
+    states = tuple(each.state for each in answer.joints)
+    shapes = view.shapes(stage.at(1.0)._replace(joints=states))
+    forces = _forces(answer, view)
+    canvas, legend = Canvas(WIDE, TALL), told(states)
+    head = title(stage, panel, answer.verdict.value.upper(), TALL, 1.0, moving=False)
+    said = [] if rates is None else ["as it begins to fall, enlarged"]
+    said += ["forces at joints: length and width in proportion"] if forces else []
+    foot = Label(24, 15, ", ".join(said), 13.0, QUIET)
+    marks, words = legend_of(legend, WIDE, 1.0)
+    canvas.keep([(panel, view.still)], [*head, foot, *words])
+    whole = Panel(0, 0, WIDE, TALL)
+    canvas.draw([(panel, [*shapes, *forces]), (whole, marks)])
+    return canvas.figure()
 
 
-def _draw_forces(
-    figure: Figure, problem: SpatialProblem, forces: Array, camera: Camera
-) -> None:
+def _forces(answer: Check[SpatialAssembly], view: SpatialView) -> list[Shape]:
     """Draw the resultants of joints over the blocks, as wide as they are large."""
-    lines, shares = force_lines(problem, forces)
-    seen = [camera.seen(line) for line, share in zip(lines, shares, strict=True) if share]
-    widths = [0.4 + 2.6 * share for share in shares.tolist() if share]
-    (axes,) = figure.axes
-    axes.add_collection(
-        LineCollection(seen, colors=THRUST, linewidths=widths, capstyle="round",
-                       gid="forces")
-    )  # fmt: skip
-    figure.text(0.97, 0.035, "forces at joints: length and width in proportion", ha="right",
-                color=THRUST)  # fmt: skip
-
-
-def _figure(answer: Check[SpatialProblem], polygons: list[Array], fills: list[Array]) -> Figure:
-    """Put polygons, title and legend on paper."""
-    figure = Figure(figsize=(8, 6), facecolor=PAPER)
-    axes = figure.add_axes((0.03, 0.09, 0.94, 0.8))
-    axes.add_collection(
-        PolyCollection(polygons, facecolors=fills, edgecolors=INK, linewidths=0.4)
-    )
-    axes.autoscale_view()
-    axes.set_aspect("equal")
-    axes.set_axis_off()
-    problem = answer.problem
-    figure.text(
-        0.04, 0.94, answer.verdict.value.upper(),
-        color=VERDICTS[answer.verdict], fontsize=13, fontweight="bold",
-    )  # fmt: skip
-    words = f"{problem.title or 'blocks in space'}, {len(problem.assembly.blocks)} blocks, "
-    figure.text(0.04, 0.905, literal(f"{words}mu {problem.mu:g}"), color=QUIET, fontsize=9)
-    states = {state_of_any(each.state) for each in answer.joints} - {JointState.CLOSED}
-    told = [words_of(each, is_arch=False) for each in sorted(states)]
-    if told:
-        figure.legend(
-            handles=[Patch(facecolor=tone, label=said) for said, tone in told],
-            loc="lower left", bbox_to_anchor=(0.03, 0.02), ncols=len(told), frameon=False,
-        )  # fmt: skip
-    if answer.mechanism is not None:
-        figure.text(0.97, 0.035, "as it begins to fall, enlarged", ha="right", color=QUIET)
-    return figure
+    static = answer.static
+    if not isinstance(static, SpatialEquilibrium) or static.point_forces is None:
+        return []
+    lines, shares = force_lines(answer.problem, static.point_forces)
+    seen = view.places(lines / answer.problem.assembly.size @ UPRIGHT.T)
+    return [
+        Shape(line, edge=colour(THRUST), width=0.5 + 3.5 * share, closed=False)
+        for line, share in zip(seen, shares.tolist(), strict=True)
+        if share
+    ]

@@ -1,160 +1,113 @@
-"""Blocks in space in perspective: a camera, and their faces from back to front."""
+"""Blocks in space as convex pieces, what their joints are seen to do in colour, forces."""
 
 from __future__ import annotations
 
 import itertools
-import math
-from collections.abc import Mapping, Sequence
-from functools import partial
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
-from matplotlib.colors import to_rgb
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import JointState
+from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
-from blocksim.blocks.space.polyhedron import Polyhedron
-from blocksim.view.order import painting_order
-from blocksim.view.style import GROUND, STONE
+from blocksim.blocks.space.parting import parted
+from blocksim.blocks.space.polyhedron import Polyhedron, frame
+from blocksim.limit.space.statics import state_of
+from blocksim.view.camera import Face, Piece
+from blocksim.view.canvas import Colour, colour, mixed, stone_tones
+from blocksim.view.drawing import state_of_any, words_of
+from blocksim.view.style import GROUND, INK, PAPER
+from blocksim.view.timeline import SEEN
 
-ASIDE, ABOVE = math.radians(-60.0), math.radians(22.0)
-"""Where the eye is: azimuth from x towards y, and height."""
-DISTANCE = 5.0
-"""Of the eye from the middle, in half-diagonals of what moves."""
-LIGHT = np.array([-0.35, -0.55, 0.76])
-AMBIENT = 0.55
-"""Brightness of a face in shade; one that faces the light has 1."""
+UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+"""From z upwards to y upwards."""
 BED = 0.25
 """How far supports are drawn beyond what moves, in units of the size."""
+WAY = 0.15
+"""How far a mechanism is drawn: its largest way in units of the size."""
 Marks = Mapping[int, Sequence[tuple[Array, Array, str]]]
 """What is painted on the faces of blocks: corners, normal out of the block, colour."""
+GONE = 0.1
+"""Opening of all points from which on it is no joint any more [size]."""
+LONGEST = 0.25
+"""Length of the largest force [size]."""
+FAINT = 1e-6
+"""Share of the largest force below which there is none."""
 
 
-class Piece(NamedTuple):
-    """A convex part as it is drawn: its faces with normals and colours."""
+class Solids:
+    """Pieces of blocks in space where they have gone, supports first [size], edges [pixels]."""
 
-    corners: Array
-    faces: list[tuple[Array, Array, str]]
+    def __init__(
+        self, assembly: SpatialAssembly, supports: Sequence[Polyhedron], line: float
+    ) -> None:
+        self._assembly, self._line = assembly, line
+        self._tones = stone_tones(len(assembly.blocks))
+        tone = mixed(colour(GROUND), colour(PAPER), 0.25)
+        self._supports = [
+            self._piece(each, np.eye(3), np.zeros(3), np.zeros(3), tone) for each in supports
+        ]
 
+    def at(self, turns: Array, shifts: Array, joints: Sequence[JointState]) -> list[Piece]:
+        """Return pieces of blocks turned, (blocks, 3, 3), and shifted, (blocks, 3) [m]."""
+        marks: Marks = marks_of(self._assembly, joints)
+        return self._supports + [
+            self._piece(
+                hull, turns[at], shifts[at], block.centre, self._tones[at], marks.get(at, ())
+            )
+            for at, block in enumerate(self._assembly.blocks)
+            for hull in block.hulls
+        ]
 
-class Camera:
-    """An eye that sees a box in perspective.
+    def _piece(
+        self, hull: Polyhedron, turn: Array, shift: Array, about: Array, tone: Colour,
+        marks: Sequence[tuple[Array, Array, str]] = (),
+    ) -> Piece:  # fmt: skip
+        def put(points: Array) -> Array:
+            return placed(points, turn, shift, about) / self._assembly.size @ UPRIGHT.T
 
-    Parameters
-    ----------
-    low, high : (3,) float
-        Ends of the box [m].
-    """
-
-    def __init__(self, low: Array, high: Array) -> None:
-        self._away = away = np.array(
-            [
-                math.cos(ASIDE) * math.cos(ABOVE),
-                math.sin(ASIDE) * math.cos(ABOVE),
-                math.sin(ABOVE),
-            ]
-        )
-        right = np.array([-math.sin(ASIDE), math.cos(ASIDE), 0.0])
-        self._axes = np.stack([right, np.cross(away, right)])
-        far = DISTANCE * float(np.linalg.norm(high - low)) / 2
-        self.eye: Array = (low + high) / 2 + far * away
-
-    def seen(self, points: Array) -> Array:
-        """Return where points are in the picture, (k, 2), in no unit."""
-        deep = (self.eye - points) @ self._away
-        return (points - self.eye) @ self._axes.T / deep[:, None]
-
-    def painted(self, pieces: Sequence[Piece]) -> tuple[list[Array], list[Array]]:
-        """Return the faces that are seen, from back to front, and their colours."""
-        polygons: list[Array] = []
-        fills: list[Array] = []
-        for index in self._order(pieces):
-            for corners, normal, tone in pieces[index].faces:
-                if normal @ (self.eye - corners[0]) > 0:
-                    shade = AMBIENT + (1 - AMBIENT) * max(0.0, float(normal @ LIGHT))
-                    polygons.append(self.seen(corners))
-                    fills.append(np.array(to_rgb(tone)) * shade)
-        return polygons, fills
-
-    def _order(self, pieces: Sequence[Piece]) -> list[int]:
-        """Order pieces from back to front."""
-        count = max(len(each.corners) for each in pieces)
-        planes = max(len(each.faces) for each in pieces)
-        corners = np.stack([_filled(each.corners, count) for each in pieces])
-        normals = np.zeros((len(pieces), planes, 3))
-        offsets = np.zeros((len(pieces), planes))
-        for at, each in enumerate(pieces):
-            for k, (points, normal, _) in enumerate(each.faces):
-                normals[at, k], offsets[at, k] = normal, points[0] @ normal
-        flat = [self.seen(each.corners) for each in pieces]
-        boxes = np.stack([np.stack([f.min(axis=0), f.max(axis=0)]) for f in flat])
-        return painting_order(corners, normals, offsets, self.eye, boxes)
+        edge, way = mixed(tone, colour(INK), 0.72), UPRIGHT @ turn
+        shown = [(each.corners, each.normal, tone, edge) for each in hull.faces]
+        # What joints do is painted on the faces they are on.
+        shown += [
+            (points, normal, colour(mark), colour(mark))
+            for points, normal, mark in marks
+            if _lies_on(points, normal, hull)
+        ]
+        faces = [
+            Face(put(each), way @ n, fill, rim, self._line) for each, n, fill, rim in shown
+        ]
+        return Piece(put(hull.corners), faces)
 
 
-def _filled(corners: Array, count: int) -> Array:
-    """Repeat the last corner until there are so many."""
-    return np.concatenate([corners, np.repeat(corners[-1:], count - len(corners), axis=0)])
+def placed(points: Array, turn: Array, shift: Array, about: Array) -> Array:
+    """Turn points about a point, and shift them."""
+    return (points - about) @ turn.T + about + shift
+
+
+def corners_of(assembly: SpatialAssembly, turns: Array, shifts: Array) -> Array:
+    """Return the corners of what moves, where it has gone, (k, 3) [size], y upwards."""
+    found = [
+        placed(hull.corners, turn, shift, block.centre)
+        for block, turn, shift in zip(assembly.blocks, turns, shifts, strict=True)
+        for hull in block.hulls
+    ]
+    return np.concatenate(found) / assembly.size @ UPRIGHT.T
 
 
 def moving_box(assembly: SpatialAssembly) -> Array:
-    """Return least and largest places of what moves, as built, (2, 3)."""
+    """Return least and largest places of what moves, as built, (2, 3) [m]."""
     boxes = np.array([hull.box for each in assembly.blocks for hull in each.hulls])
     return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
 
 
-def supports_of(assembly: SpatialAssembly, low: Array, high: Array) -> list[Piece]:
-    """Return what stays, cut off beyond a box."""
+def supports_of(assembly: SpatialAssembly, low: Array, high: Array) -> list[Polyhedron]:
+    """Return what stays, cut off beyond a box [m]."""
     bed = BED * assembly.size
-    found = [
-        _cut(hull, low - bed, high + bed) for each in assembly.supports for hull in each.hulls
-    ]
-    return [each for each in found if len(each.faces)]
-
-
-def blocks_of(
-    assembly: SpatialAssembly, turns: Array, shifts: Array, marks: Marks | None = None
-) -> list[Piece]:
-    """Return what moves, where it has gone.
-
-    Parameters
-    ----------
-    assembly : SpatialAssembly
-    turns : (blocks, 3, 3) float
-        About their centres.
-    shifts : (blocks, 3) float
-        Of their centres [m].
-    marks : mapping, optional
-    """
-    found: list[Piece] = []
-    for at, block in enumerate(assembly.blocks):
-        turn = turns[at]
-        put = partial(_put, turn=turn, shift=shifts[at], about=block.centre)
-        for hull in block.hulls:
-            faces = [(put(each.corners), turn @ each.normal, STONE) for each in hull.faces]
-            # What joints do is painted on the faces they are on.
-            faces += [
-                (put(points), turn @ normal, tone)
-                for points, normal, tone in (marks or {}).get(at, [])
-                if _lies_on(points, normal, hull)
-            ]
-            found.append(Piece(put(hull.corners), faces))
-    return found
-
-
-def corners_of(assembly: SpatialAssembly, turns: Array, shifts: Array) -> Array:
-    """Return the corners of what moves, where it has gone, (k, 3) [m]."""
-    return np.concatenate(
-        [
-            _put(hull.corners, turn, shift, block.centre)
-            for block, turn, shift in zip(assembly.blocks, turns, shifts, strict=True)
-            for hull in block.hulls
-        ]
-    )
-
-
-def _put(points: Array, turn: Array, shift: Array, about: Array) -> Array:
-    """Turn points about a point, and shift them."""
-    return (points - about) @ turn.T + about + shift
+    hulls = [hull for each in assembly.supports for hull in each.hulls]
+    found = [_cut(hull, low - bed, high + bed) for hull in hulls]
+    return [each for each in found if each is not None]
 
 
 def _lies_on(points: Array, normal: Array, hull: Polyhedron) -> bool:
@@ -166,11 +119,79 @@ def _lies_on(points: Array, normal: Array, hull: Polyhedron) -> bool:
     )
 
 
-def _cut(hull: Polyhedron, low: Array, high: Array) -> Piece:
+def _cut(hull: Polyhedron, low: Array, high: Array) -> Polyhedron | None:
     """Return the box around a support, cut off beyond what is shown; or itself if within."""
-    if not ((hull.box[0] >= low).all() and (hull.box[1] <= high).all()):
-        lower, upper = np.maximum(hull.box[0], low), np.minimum(hull.box[1], high)
-        if not (upper - lower > 1e-9).all():
-            return Piece(np.zeros((0, 3)), [])
-        hull = Polyhedron(list(itertools.product(*zip(lower, upper, strict=True))))
-    return Piece(hull.corners, [(f.corners, f.normal, GROUND) for f in hull.faces])
+    if (hull.box[0] >= low).all() and (hull.box[1] <= high).all():
+        return hull
+    lower, upper = np.maximum(hull.box[0], low), np.minimum(hull.box[1], high)
+    if not (upper - lower > 1e-9).all():
+        return None
+    return Polyhedron(list(itertools.product(*zip(lower, upper, strict=True))))
+
+
+def states_at(assembly: SpatialAssembly, poses: Array) -> tuple[JointState, ...]:
+    """Tell what joints are seen to do at poses, (blocks, 6) [size, rotation vectors]."""
+    gap, slip = parted(assembly, poses)
+    ends = np.cumsum([len(each.points) for each in assembly.joints])[:-1]
+    found: list[JointState] = []
+    for opens, slides in zip(np.split(gap, ends), np.split(slip, ends), strict=True):
+        away = float(opens.min()) > GONE or float(slides.min()) > GONE
+        together = opens <= SEEN
+        state = state_of(together, together & (slides > SEEN))
+        found.append(JointState.CLOSED if away else state)
+    return tuple(found)
+
+
+def marks_of(assembly: SpatialAssembly, states: Sequence[JointState]) -> Marks:
+    """Return joints that take part by block, each with its normal out of it and a colour."""
+    told: dict[int, list[tuple[Array, Array, str]]] = {}
+    for joint, state in zip(assembly.joints, states, strict=True):
+        if state is JointState.CLOSED or len(joint.points) < 3:
+            continue
+        tone = words_of(state, is_arch=False)[1]
+        for side, sign in ((joint.before, 1.0), (joint.after, -1.0)):
+            told.setdefault(side, []).append((joint.points, sign * joint.normal, tone))
+    return told
+
+
+def told(states: Iterable[JointState]) -> list[tuple[str, str]]:
+    """Return words and colours of what joints do, for a legend."""
+    seen = {state_of_any(each) for each in states} - {JointState.CLOSED}
+    return [words_of(each, is_arch=False) for each in sorted(seen)]
+
+
+def force_lines(problem: Problem[SpatialAssembly], forces: Array) -> tuple[Array, Array]:
+    """Return where the resultants of joints act, and how large they are.
+
+    Parameters
+    ----------
+    problem : Problem[SpatialAssembly]
+    forces : (points, 3) float
+        At the points of all joints, along their normals and across, as of `SpatialStatics`.
+
+    Returns
+    -------
+    lines : (joints, 2, 3) float
+        From end to end through the centre of pressure, in proportion to the force [m].
+    shares : (joints,) float
+        Of the largest force.
+    """
+    sums, places = pressed(problem, forces)
+    sizes = np.linalg.norm(sums, axis=1)
+    largest = float(sizes.max(initial=0.0)) or 1.0
+    way = LONGEST * problem.assembly.size * sums / largest / 2
+    lines = np.stack([places - way, places + way], axis=1)
+    return lines, np.where(sizes > FAINT * largest, sizes / largest, 0.0)
+
+
+def pressed(problem: Problem[SpatialAssembly], forces: Array) -> tuple[Array, Array]:
+    """Return the resultants of joints along x, y and z, and their centres of pressure [m]."""
+    sums, places = np.zeros((2, len(problem.assembly.joints), 3))
+    ends = np.cumsum([len(each.points) for each in problem.assembly.joints])[:-1]
+    for at, part in enumerate(np.split(forces, ends)):
+        joint = problem.assembly.joints[at]
+        sums[at] = part.sum(axis=0) @ np.vstack([joint.normal, frame(joint.normal)])
+        press = np.maximum(part[:, 0], 0.0)
+        weights = press if press.sum() > 0 else np.ones(len(press))
+        places[at] = np.average(joint.points, axis=0, weights=weights)
+    return sums, places

@@ -1,5 +1,3 @@
-# matplotlib's own annotations leave keyword arguments open.
-# pyright: reportUnknownMemberType=false
 """What stills are drawn of: supports, blocks, gaps that were closed, mechanism, joints."""
 
 from __future__ import annotations
@@ -17,6 +15,8 @@ from blocksim.blocks.assembly import SUPPORT, Array, Joint
 from blocksim.blocks.closing import marked_gaps
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.road import profile_of, road_of
+from blocksim.view.arrows import draw_loads
 from blocksim.view.drawing import (
     HINGES,
     carried,
@@ -25,11 +25,13 @@ from blocksim.view.drawing import (
     words_of,
 )
 from blocksim.view.style import (
+    FILL,
     GAP,
     GROUND,
     INK,
     MECHANISM,
     PAPER,
+    QUIET,
     STONE,
     line_style,
 )
@@ -39,6 +41,8 @@ MOVED, AROUND = 0.08, 0.06
 support is shown beyond the blocks."""
 FAINT = 1e-6
 """Share of the largest rate below which there is none."""
+CLOSE = 1e-6
+"""Share of a top's length by which the next may be apart and follow it."""
 HATCH = "////"
 SIZED = 20
 """How many gaps have their size beside them, the largest ones."""
@@ -118,6 +122,62 @@ def _strip(joint: Joint, deep: float) -> Array:
     return np.array([near[0], near[1], near[1] + out, near[0] + out])
 
 
+def fill_outlines(problem: Problem) -> list[tuple[Array, bool]]:
+    """Return outlines of fill and backing (true) below the road [m], cut off at supports."""
+    road = road_of(problem)
+    if road is None:
+        return []
+    (low, high), _ = _around(problem)
+    profile = profile_of(problem.assembly)
+    tops = [clipped_line(each, low[0], high[0]) for each in profile.ends]
+    levels = [(road, False)]
+    if problem.soil is not None and problem.soil.backing is not None:
+        mine = profile.ends[profile.body < len(problem.assembly.blocks), :, 1]
+        levels.append((float(mine.min()) + problem.soil.backing[0], True))
+    found: list[tuple[Array, bool]] = []
+    for level, is_backing in levels:
+        for run in _runs([each for each in tops if len(each)]):
+            over = np.array([[run[0, 0], level], [run[-1, 0], level]])
+            under = np.minimum(run, [math.inf, level])
+            found.append((np.concatenate([under, over[::-1]]), is_backing))
+    return found
+
+
+def clipped_line(ends: Array, low: float, high: float) -> Array:
+    """Cut a line from left to right, (2, 2), off at two places along x; empty beyond."""
+    (x0, y0), (x1, y1) = ends.tolist()
+    start, stop = max(x0, low), min(x1, high)
+    if start >= stop:
+        return ends[:0]
+    return np.array([[x, y0 + (y1 - y0) * (x - x0) / (x1 - x0)] for x in (start, stop)])
+
+
+def _runs(pieces: Sequence[Array]) -> list[Array]:
+    """Join pieces from left to right that follow each other."""
+    runs: list[list[Array]] = []
+    for piece in pieces:
+        if runs and piece[0, 0] - runs[-1][-1][1, 0] <= CLOSE * (piece[1, 0] - piece[0, 0]):
+            runs[-1].append(piece)
+        else:
+            runs.append([piece])
+    return [np.concatenate(run) for run in runs]
+
+
+def draw_fill(axes: Axes, problem: Problem) -> list[Array]:
+    """Draw fill as an area up to the road, and backing more densely."""
+    shown: list[Array] = []
+    for index, (outline, is_backing) in enumerate(fill_outlines(problem)):
+        name, hatch = ("backing", "xx..") if is_backing else ("fill", "..")
+        axes.add_patch(
+            PathPatch(_shape([outline]), fc=FILL, ec=QUIET, hatch=hatch, lw=0, zorder=0.3,
+                      gid=f"{name}-{index}", label=name)
+        )  # fmt: skip
+        if not is_backing:
+            axes.plot(*outline[-2:].T, color=QUIET, lw=0.8, zorder=0.4, gid=f"road-{index}")
+        shown.append(outline)
+    return shown
+
+
 def draw_blocks(axes: Axes, problem: Problem, width: float) -> None:
     """Draw blocks as stone, with edges so wide [points], and gaps closed between them."""
     for index, block in enumerate(problem.assembly.blocks):
@@ -131,6 +191,24 @@ def draw_blocks(axes: Axes, problem: Problem, width: float) -> None:
             LineCollection(sides, colors=INK, linewidths=width, zorder=2, capstyle="round")
         )
     _draw_gaps(axes, problem)
+
+
+def draw_structure(
+    axes: Axes,
+    problem: Problem,
+    mechanism: Array | None = None,
+    states: Sequence[JointState] | None = None,
+) -> list[Array]:
+    """Draw fill, supports, blocks, how they move, and joints; return points of all of it."""
+    corners = np.concatenate([block.vertices for block in problem.assembly.blocks])
+    extent = float(np.ptp(corners, axis=0).max())
+    shown = [corners, *draw_fill(axes, problem), *draw_supports(axes, problem)]
+    draw_blocks(axes, problem, 0.8 * edge_width(problem, extent))
+    if mechanism is not None:
+        shown += draw_mechanism(axes, problem, mechanism, extent)
+    if states is not None:
+        draw_states(axes, problem, states)
+    return shown + draw_loads(axes, problem, extent)
 
 
 def _draw_gaps(axes: Axes, problem: Problem) -> None:

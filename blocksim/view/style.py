@@ -7,6 +7,7 @@ for protanopia, deuteranopia and tritanopia, and where only grey is left in colo
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 from blocksim.arch.modes import Mode
@@ -45,6 +46,8 @@ def mix(one: str, other: str, share: float) -> str:
 
 
 STONE, GROUND, PAPER = "#d9cdb8", "#b9b3a6", "#fbfaf7"
+FILL = "#efe9dc"
+"""Of fill and backing, which are hatched."""
 INK, QUIET = "#222222", "#5d5a53"
 """Of lines and words, and of those that matter less."""
 MISS = "#c00000"
@@ -96,6 +99,19 @@ GAP = "#4a1f4f"
 """Of joints at which a drawing's gap or overlap is closed."""
 ISO = "#0072B2"
 """Of lines of equal half-angle on maps that have no modes."""
+
+USE = (
+    (0.5, "up to 50 % used", "#adb7eb"),
+    (0.8, "50 to 80 % used", "#6c7eda"),
+    (math.inf, "more than 80 % used", "#2f45bc"),
+)
+"""Of joints by how much of their width or friction is used: up to a share, words, colour."""
+
+
+def use_of(share: float) -> tuple[str, str]:
+    """Return words and colour of a joint of which so much is used."""
+    return next((words, tone) for most, words, tone in USE if share <= most)
+
 
 DASHES: dict[str, tuple[float, ...]] = {
     FRICTION: (5.0, 1.6),

@@ -55,7 +55,6 @@ def thrust_lines(problem: Problem, forces: Array) -> list[Array]:
 
     Parameters
     ----------
-    problem : Problem
     forces : (joints, 2, 2) float
         As of `Equilibrium` [mean weights].
 
@@ -144,7 +143,6 @@ def force_sizes(problem: Problem, forces: Array, path: Array) -> Array:
 
     Parameters
     ----------
-    problem : Problem
     forces : (joints, 2, 2) float
         As of `Equilibrium` [mean weights].
     path : (k, 2) float

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -14,17 +15,7 @@ KILO = 1e3
 
 @dataclass(frozen=True, kw_only=True)
 class ForceUnit:
-    """In what forces are told.
-
-    Parameters
-    ----------
-    newtons : float
-        One unit, in N: of a force over the depth times the depth.
-    name : str
-        kN/m, or kN where blocks differ in depth; N/m or N where forces are small.
-    note : str
-        What has to be known of it; empty where nothing has.
-    """
+    """In what forces are told: a unit in N, over the depth where that is one, and a note."""
 
     newtons: float
     name: str
@@ -39,11 +30,10 @@ class ForceUnit:
         return f"{self.number(newtons)} {self.name}"
 
 
-def force_unit(problem: Problem) -> ForceUnit:
+def force_unit(problem: Problem[Any]) -> ForceUnit:
     """Choose in what the forces of a problem are told."""
-    depths = problem.assembly.depths * problem.assembly.size
-    common = float(np.ptp(depths)) <= 1e-9 * float(depths.max())
-    over, per = (float(depths[0]), "/m") if common else (1.0, "")
+    depth = common_depth(problem)
+    over, per = (1.0, "") if depth is None else (depth, "/m")
     if unit_weight(problem) is None:
         note = "weights are for 1 N/m\N{SUPERSCRIPT THREE}: no unit weight was given"
         return ForceUnit(newtons=over, name=f"N{per}", note=note)
@@ -51,15 +41,22 @@ def force_unit(problem: Problem) -> ForceUnit:
     return ForceUnit(newtons=over * (KILO if heavy else 1.0), name=f"{'k' * heavy}N{per}")
 
 
-def unit_weight(problem: Problem) -> float | None:
-    """Return the unit weight of the blocks [N/m^3].
+def common_depth(problem: Problem[Any]) -> float | None:
+    """Return the depth [m] that all blocks of the plane have; None where there is none."""
+    if problem.in_space:
+        return None
+    depths = problem.assembly.depths * problem.assembly.size
+    return float(depths[0]) if np.ptp(depths) <= 1e-9 * depths.max() else None
 
-    The median, where blocks differ; None where none was given.
-    """
+
+def unit_weight(problem: Problem[Any]) -> float | None:
+    """Return the (median) unit weight of the blocks [N/m^3]; None where none was given."""
     if not problem.weighed:
         return None
     if problem.maker is not None:
         return problem.maker.unit_weight
+    if problem.in_space:
+        return float(np.median(problem.assembly.weights / problem.assembly.volumes))
     weights = [
         block.mass
         * STANDARD_GRAVITY

@@ -1,10 +1,8 @@
-# PyAV's annotations leave keyword arguments and types of packets open.
-# pyright: reportUnknownMemberType=false
 """Films to files: mp4 by PyAV, gif by Pillow, single frames as png, svg and pdf."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
@@ -25,7 +23,6 @@ from blocksim.view.style import GROUND, INK, JOINTS, PAPER, QUIET, THRUST
 RATES = {"mp4": 30, "gif": 20}
 """Frames in a second; a gif counts in hundredths."""
 STILLS = ("png", "svg", "pdf")
-KINDS = (*RATES, *STILLS)
 QUALITY = "19"
 """Constant rate factor of x264: lines stay crisp."""
 THREADS = 2
@@ -43,25 +40,11 @@ DRAWN = (*JOINTS.values(), THRUST, INK, QUIET, PAPER, GROUND)
 class Frames(Protocol):
     """What a film is made of."""
 
-    @property
-    def width(self) -> int:
-        """Of a frame [pixels]."""
-        ...
-
-    @property
-    def height(self) -> int:
-        """Of a frame [pixels]."""
-        ...
-
-    @property
-    def rate(self) -> int:
-        """Frames in a second."""
-        ...
-
-    @property
-    def count(self) -> int:
-        """Number of frames."""
-        ...
+    width: int
+    height: int
+    rate: int
+    """Frames in a second."""
+    count: int
 
     def frame(self, number: int) -> NDArray[np.uint8]:
         """Draw a frame, shape (height, width, 4)."""
@@ -117,19 +100,9 @@ def render(
 
 
 def write_film(film: Frames, out: AnyPath, progress: Progress = silent) -> None:
-    """Encode frames into a file ending in .mp4 or .gif, whole or not at all.
-
-    Raises
-    ------
-    InputError, MachineError
-        If the film is too long or too large, or the file cannot be written.
-    """
+    """Encode frames into an .mp4 or .gif, whole or not at all; refuse too long ones."""
     _require_bounded(film, Path(out).suffix.removeprefix("."))
-    kinds: dict[str, Callable[[Frames, BinaryIO, Progress], None]] = {
-        "mp4": _mp4,
-        "gif": _gif,
-    }
-    write = kinds[Path(out).suffix.removeprefix(".")]
+    write = _mp4 if Path(out).suffix == ".mp4" else _gif
     write_whole(out, lambda file: write(film, file, progress))
 
 
@@ -179,11 +152,7 @@ def _mp4(film: Frames, file: BinaryIO, progress: Progress) -> None:
 
 
 def _palette(film: Frames) -> Image.Image:
-    """Make one palette for all frames, so that colours do not flicker.
-
-    Lines are few pixels among many of stone and ground: their colours are given, and only
-    the rest is chosen from frames.
-    """
+    """Make one palette for all frames: lines are few pixels, so their colours are given."""
     given = list(dict.fromkeys(to_bytes(name) for name in DRAWN))
     numbers = np.unique(np.linspace(0, film.count - 1, SAMPLES).astype(int)).tolist()
     samples = np.concatenate([film.frame(number)[::2, ::2, :3] for number in numbers])
@@ -202,15 +171,13 @@ def to_bytes(name: str) -> tuple[int, int, int]:
 
 
 def _gif(film: Frames, file: BinaryIO, progress: Progress) -> None:
-    def picture(number: int) -> Image.Image:
-        return Image.fromarray(film.frame(number)[..., :3])
-
     palette = _palette(film)
 
     def frames() -> Iterator[Image.Image]:
         for number in range(film.count):
             progress((number + 1) / film.count, "rendering")
-            yield picture(number).quantize(palette=palette, dither=Image.Dither.NONE)
+            picture = Image.fromarray(film.frame(number)[..., :3])
+            yield picture.quantize(palette=palette, dither=Image.Dither.NONE)
 
     every = frames()
     next(every).save(

@@ -13,8 +13,8 @@ import math
 
 import numpy as np
 
-from blocksim.blocks.assembly import Array, Assembly
-from blocksim.blocks.problem import Problem
+from blocksim import Assembly, Problem
+from blocksim.blocks.assembly import Array
 from blocksim.engines.base import FRICTION_CAP, Engine, Quality, Settings
 from blocksim.engines.contact.geometry import Geometry, Touch
 
@@ -55,14 +55,13 @@ class Springs:
     def hold(self, sweeps: int) -> Array:
         """Look for contact forces at rest: springs whose blocks drift in a thick fluid."""
         touch, _ = self._geometry.touch(self._poses)
-        pull, thick = self._problem.pull(self._poses), 2 / len(self._poses)
+        applied, thick = self._problem.applied_forces(self._poses), 2 / len(self._poses)
         for _ in range(sweeps):
-            found = self._accelerations(touch, pull)
+            found = self._accelerations(touch, applied)
             self._drift = (self._drift + found) / (1 + thick)
-            self._forces = self._allowed(
-                self._forces - self._rates(touch, self._drift) / self._most
-            )
-        return self._accelerations(touch, pull)
+            pressed = self._forces - self._rates(touch, self._drift) / self._most
+            self._forces = self._allowed(pressed)
+        return self._accelerations(touch, applied)
 
     def advance(self, steps: int) -> None:
         """Let the blocks move, in the short steps that stiff springs take."""
@@ -77,7 +76,8 @@ class Springs:
             forces[:, :2] = self._preload - STIFF * touch.gap
             self._forces = self._allowed(forces) * holds[:, None]
             pushed = self._allowed(self._forces - damped * rates) * holds[:, None]
-            found = self._accelerations(touch, self._problem.pull(self._poses), pushed)
+            applied = self._problem.applied_forces(self._poses)
+            found = self._accelerations(touch, applied, pushed)
             self._velocities = self._velocities + step * found
             self._poses = self._poses + step * self._velocities
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from derivations import least_thickness_by_program
 
+from blocksim import Arch, Mode
 from blocksim.arch import limit, theory
-from blocksim.arch.circular import Arch, centroid_factor
+from blocksim.arch.circular import centroid_factor
 from blocksim.arch.limit import statics
-from blocksim.arch.modes import Mode
 from blocksim.arch.theory.lines import critical_moment, friction_line, thrust_line
 from blocksim.arch.theory.map import at_points, divide_friction
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
-from blocksim.blocks.problem import Problem
+from blocksim import Assembly, Block, Joint, Problem
+from blocksim.blocks.assembly import SUPPORT
 from blocksim.engines.direct import ENGINE, Blocks
 
 STEPS = (0.02, 0.01, 0.005, 0.0025)
@@ -40,45 +40,6 @@ def world_of(assembly, mu, step):
 
 def order(errors):
     return np.polyfit(np.log(STEPS), np.log(errors), 1)[0]
-
-
-@pytest.mark.parametrize("mu", [1e-9, 0.2, 0.5])
-def test_a_block_slides_down_a_slope(mu):
-    slope, time = math.radians(35), 0.5
-    fall = math.sin(slope) - mu * math.cos(slope)
-    for step in STEPS:
-        assembly, along = standing_block(1.0, 0.2, slope)
-        world = world_of(assembly, mu, step)
-        start = world.poses()
-        world.advance(round(time / step))
-        moved = world.poses() - start
-        # Way and velocity are exact, and nothing else moves.
-        assert moved[0, :2] @ along == pytest.approx(fall * time**2 / 2, abs=1e-8)
-        assert world.velocities[0, :2] @ along == pytest.approx(fall * time, abs=1e-8)
-        assert abs(moved[0, 2]) < 1e-9
-
-
-def test_a_block_stays_on_a_slope_it_can_hold():
-    slope = math.radians(35)
-    assembly, _ = standing_block(1.0, 0.2, slope)
-    for ratio, stays in ((1 + 1e-9, True), (1 - 1e-9, False)):
-        world = world_of(assembly, ratio * math.tan(slope), 0.01)
-        assert (np.abs(world.hold(1)).max() < 1e-11) == stays
-
-
-def test_a_sliding_block_stops_where_friction_has_used_its_energy():
-    mu, speed = 0.4, 0.3
-    way = speed**2 / (2 * mu)
-    for step in STEPS:
-        assembly, along = standing_block(1.0, 0.2)
-        world = world_of(assembly, mu, step)
-        start = world.poses()
-        world.push(np.array([[speed, 0.0, 0.0]]))
-        world.advance(round(1.0 / step))
-        assert np.abs(world.velocities).max() < 1e-12
-        # It stops within a step, at most this far off.
-        error = abs((world.poses() - start)[0, :2] @ along - way)
-        assert error < mu * step**2 / 8 + 1e-8
 
 
 def test_a_block_rocks_about_its_corner():

@@ -26,8 +26,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from blocksim import Mode
 from blocksim.arch import theory
-from blocksim.arch.modes import Mode
 from blocksim.arch.theory import equations
 from blocksim.arch.theory.critical import Critical
 from blocksim.arch.theory.regions import crown_hinge, divide, equal_angles, first_sliding

@@ -17,9 +17,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar, root
 
+from blocksim import Arch, Mode
 from blocksim.arch import limit, theory
-from blocksim.arch.circular import Arch
-from blocksim.arch.modes import Mode
 from blocksim.arch.theory.map import at_points
 from blocksim.arch.theory.regions import crown_hinge, divide, equal_angles, first_sliding
 

@@ -32,8 +32,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
+from blocksim import Mode
 from blocksim.arch import limit, theory
-from blocksim.arch.modes import Mode
 from blocksim.arch.theory.regions import divide, divide_half_angle, first_sliding
 
 QUARTER = math.pi / 2

@@ -15,14 +15,15 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq, linprog
+from own_balance import violation
+from scipy.optimize import brentq
 
-from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint, displacement
-from blocksim.blocks.problem import Problem
+from blocksim import Assembly, Block, Joint, Problem, Verdict
+from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.engines import ENGINES, get_engine
 from blocksim.simulation.motion import LONGEST, MOVED, QUIET
 from blocksim.simulation.onset import onset
-from blocksim.simulation.verdict import Verdict
+from blocksim.simulation.simulated import Simulation
 
 BELOW, ABOVE = 0.99, 1.01
 SLOPES = [5.0, 20.0, 40.0]
@@ -70,8 +71,9 @@ def settles(
     chosen = library.rule(assembly)
     settings = replace(chosen, hold_sweeps=chosen.hold_sweeps * patience)
     problem = Problem(assembly=assembly, mu=mu).leaning(lean)
-    world = library.build(problem, settings)
-    held = onset(world, library, problem, settings)
+    simulation = Simulation(problem=problem, engine=library, settings=settings)
+    world = simulation.world()
+    held = onset(world, simulation)
     if held.verdict is Verdict.UNDECIDED or not moving:
         return held.verdict
     start, time, moved = world.poses(), 0.0, 0.0
@@ -79,7 +81,7 @@ def settles(
     while moved < MOVED and time < LONGEST and not (time >= QUIET and moved < settings.rest):
         world.advance(steps)
         time += steps * settings.step
-        moved = float(displacement(world.poses() - start, assembly))
+        moved = float(assembly.displacement(world.poses() - start))
     if moved >= MOVED:
         seen = Verdict.COLLAPSES
     else:
@@ -215,49 +217,7 @@ def test_a_wedge_drives_two_blocks_apart(engine: str, degrees: float, width: flo
 
 def least_friction(assembly: Assembly) -> float:
     """Smallest friction with which some contact forces are in equilibrium, by statics."""
-    return float(brentq(lambda mu: lacking(assembly, mu), 1e-6, 3.0, xtol=1e-10))
-
-
-def lacking(assembly: Assembly, mu: float) -> float:
-    """Least friction force that every joint needs beyond mu times what presses it.
-
-    A linear programme: a joint of straight faces presses at its two ends, N1, N2 >= 0,
-    and rubs with T. Every block is in equilibrium, and |T| - mu (N1 + N2) <= s in every
-    joint, for the least s: negative where mu is more than enough. It is bounded below, as
-    thrust may be had at will between rigid springings.
-    """
-    blocks, joints = assembly.blocks, assembly.joints
-    balance = np.zeros((3 * len(blocks), 3 * len(joints) + 1))
-    cone = np.zeros((2 * len(joints), 3 * len(joints) + 1))
-    for k, joint in enumerate(joints):
-        acting = (
-            (joint.inner, joint.normal),
-            (joint.outer, joint.normal),
-            (joint.inner, joint.tangent),
-        )
-        for index, sign in ((joint.before, -1.0), (joint.after, 1.0)):
-            if index == SUPPORT:
-                continue
-            for column, (point, force) in enumerate(acting):
-                x, y = point - blocks[index].centre
-                moment = x * force[1] - y * force[0]
-                rows = slice(3 * index, 3 * index + 3)
-                balance[rows, 3 * k + column] = sign * np.array([*force, moment])
-        cone[2 * k, 3 * k : 3 * k + 3] = -mu, -mu, 1.0
-        cone[2 * k + 1, 3 * k : 3 * k + 3] = -mu, -mu, -1.0
-    cone[:, -1] = -1.0
-    weight = np.array([[0.0, block.mass, 0.0] for block in blocks]).ravel()
-    presses: list[tuple[float | None, None]] = [(0, None), (0, None), (None, None)]
-    found = linprog(
-        [0.0] * (3 * len(joints)) + [1.0],
-        A_ub=cone,
-        b_ub=np.zeros(len(cone)),
-        A_eq=balance,
-        b_eq=weight,
-        bounds=[*presses * len(joints), (-1.0, None)],
-    )
-    assert found.success
-    return float(found.x[-1])
+    return float(brentq(lambda mu: violation(assembly, mu), 1e-6, 3.0, xtol=1e-10))
 
 
 def flat_arch(half_angle: float, half_span: float, depth: float, count: int) -> Assembly:

@@ -2,34 +2,18 @@
 
 from __future__ import annotations
 
-import math
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from blocksim.arch.circular import WEIGHTS, Weight
-from blocksim.arch.limit.halfplanes import FEW, Joints, sliding, turning
-from blocksim.arch.limit.statics import ETA_MAX, half_joints, least_of, spread_of, thrust_bounds
+from blocksim.arch.circular import ETA_MAX, Weight, checked_arrays
+from blocksim.arch.limit.halfplanes import FEW, Joints, half_joints, sliding, spread_of, turning
+from blocksim.arch.limit.statics import least_of, thrust_bounds
 from blocksim.blocks.assembly import Array
-from blocksim.common.checks import VOUSSOIRS, require
+from blocksim.common.checks import VOUSSOIRS
 
 WORKING_SET = 25_000
 """Pairs of joints held at once; their temporaries stay in the cache."""
 HALVINGS = 52
-
-
-class Intervals(NamedTuple):
-    """Admissible thrusts of many arches; empty where most < least.
-
-    Parameters
-    ----------
-    most, least : (k,) float
-        1 - h, of the lowest thrust and of the highest.
-    """
-
-    most: Array
-    least: Array
 
 
 def which_stand(
@@ -51,7 +35,6 @@ def which_stand(
         Above 0, inf allowed; the three broadcast against each other.
     voussoirs : int
         Number of voussoirs of every arch, 3 to 10000.
-    weight : {"centreline", "sector"}
 
     Returns
     -------
@@ -62,7 +45,8 @@ def which_stand(
     InputError
         If a value is out of range.
     """
-    alpha, depth, friction = _checked(half_angle, eta, mu, voussoirs, weight)
+    VOUSSOIRS.require("voussoirs", voussoirs)
+    alpha, depth, friction = checked_arrays(weight, half_angle=half_angle, eta=eta, mu=mu)
     found = np.empty(alpha.size, dtype=bool)
     flat = alpha.reshape(-1), depth.reshape(-1), friction.reshape(-1)
     size = chunk_size(voussoirs // 2 + 1)
@@ -80,7 +64,7 @@ def chunk_size(joints: int) -> int:
     return max(1, WORKING_SET // joints**2)
 
 
-def short_intervals(joints: Joints, depth: Array, mu: Array, spread: Array) -> Intervals:
+def short_intervals(joints: Joints, depth: Array, mu: Array, spread: Array) -> Array:
     """Intervals of thrusts in equilibrium with strength at every joint.
 
     Parameters
@@ -92,14 +76,15 @@ def short_intervals(joints: Joints, depth: Array, mu: Array, spread: Array) -> I
 
     Returns
     -------
-    Intervals
+    (2, k) float
+        1 - h, of the lowest thrust and of the highest; none where the first is the less.
     """
     if joints.angles.shape[1] > FEW:
         known = zip(np.sort(joints.angles), depth, mu, spread, strict=True)
         bounds = [
             thrust_bounds(Joints(a[None]), float(d), float(m), float(s)) for a, d, m, s in known
         ]
-        return Intervals(*np.array([[low.short, high.short] for low, high in bounds]).T)
+        return np.array([[low.short, high.short] for low, high in bounds]).T
     turns = turning(joints, depth, spread)
     highest, lowest = turns.ends()
     most, least = highest.min(axis=(1, 2)), lowest.max(axis=(1, 2))
@@ -112,7 +97,7 @@ def short_intervals(joints: Joints, depth: Array, mu: Array, spread: Array) -> I
         highest, lowest = sliding(joints, mu[held], sign).ends()
         most[held] = np.minimum(most[held], highest.min(axis=1))
         least[held] = np.maximum(least[held], lowest.max(axis=1))
-    return Intervals(most, least)
+    return np.stack([most, least])
 
 
 def least_thickness_of_joints(angles: Array, mu: Array, weight: Weight) -> Array:
@@ -124,7 +109,6 @@ def least_thickness_of_joints(angles: Array, mu: Array, weight: Weight) -> Array
         Joints of one half of each arch, in any order [rad].
     mu : (k,) float
         Friction coefficients, inf allowed.
-    weight : {"centreline", "sector"}
 
     Returns
     -------
@@ -154,24 +138,3 @@ def least_thickness_of_joints(angles: Array, mu: Array, weight: Weight) -> Array
 def _empty(joints: Joints, eta: Array, mu: Array, weight: Weight) -> NDArray[np.bool_]:
     most, least = short_intervals(joints, eta, mu, spread_of(eta, weight))
     return most < least
-
-
-def _checked(
-    half_angle: ArrayLike, eta: ArrayLike, mu: ArrayLike, voussoirs: int, weight: Weight
-) -> tuple[Array, Array, Array]:
-    alpha, depth, friction = np.broadcast_arrays(
-        np.asarray(half_angle, dtype=float),
-        np.asarray(eta, dtype=float),
-        np.asarray(mu, dtype=float),
-    )
-    for field, values, upto, allowed in (
-        ("half_angle", alpha, math.nextafter(math.pi, 0), "above 0 and below pi"),
-        ("eta", depth, ETA_MAX, "above 0 and at most 2"),
-        ("mu", friction, math.inf, "above 0 (inf for unbounded friction)"),
-    ):
-        wrong = ~((values > 0) & (values <= upto))
-        if wrong.any():
-            require(False, field, float(values[wrong].flat[0]), allowed)
-    VOUSSOIRS.require("voussoirs", voussoirs)
-    require(weight in WEIGHTS, "weight", weight, f"one of {', '.join(WEIGHTS)}")
-    return alpha, depth, friction

@@ -6,14 +6,11 @@ the rates at its own joints that fit together (A' rates = 0, see `mechanism`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from blocksim.arch.circular import Weight, centroid_factor
-from blocksim.arch.limit.mechanism import conditions, motions_of
+from blocksim.arch.limit.mechanism import Collapse, conditions, of_half
 from blocksim.arch.modes import Mode
-from blocksim.blocks.assembly import Array
 
 EXTRADOS, INTRADOS, OUT, IN = range(4)
 COMPATIBLE = 1e-6
@@ -21,24 +18,6 @@ COMPATIBLE = 1e-6
 
 SAME = 1e-9
 """Angle within which hinge and sliding joint are one joint [rad]."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Collapse:
-    """A symmetric mechanism; see `Mechanism`.
-
-    Parameters
-    ----------
-    angles : (k,) float
-        Springings and active joints, left to right [rad].
-    rates : (k, 4) float
-    motions : (k - 1, 3) float
-        Velocities of the pieces between them.
-    """
-
-    angles: Array
-    rates: Array
-    motions: Array
 
 
 def collapse_of_mode(
@@ -55,11 +34,9 @@ def collapse_of_mode(
 
     Parameters
     ----------
-    mode : Mode
     half_angle, eta, mu, beta_r, beta_s : float
         As `least_thickness` of the theory gives them; `beta_r` and `beta_s` where the
         mode has such a joint [rad].
-    weight : {"centreline", "sector"}
 
     Returns
     -------
@@ -73,7 +50,7 @@ def collapse_of_mode(
     """
     active = _active(mode, half_angle, beta_r, beta_s)
     angles = np.unique([angle for angle, _ in active])
-    program = conditions(angles, eta, mu, centroid_factor(eta, weight), symmetric=True)
+    program = conditions(angles, eta, mu, centroid_factor(eta, weight))
     rows = [4 * int(np.searchsorted(angles, angle)) + kind for angle, kind in active]
     # The null vector: one more rate than there are equations, or a dependence among them.
     found = np.linalg.svd(program.matrix[rows].T)[2][-1]
@@ -84,11 +61,7 @@ def collapse_of_mode(
         raise ValueError(message)
     rates = np.zeros((angles.size, 4))
     rates.reshape(-1)[rows] = np.maximum(found, 0.0)
-    crown = angles == 0
-    rates = rates * np.where(crown, 1.0, 0.5)[:, None]
-    kept = slice(None, None, -1) if not crown.any() else slice(None, 0, -1)
-    every, both = np.concatenate([-angles[kept], angles]), np.concatenate([rates[kept], rates])
-    return Collapse(angles=every, rates=both, motions=motions_of(every, both, eta, mu))
+    return of_half(angles, rates, eta, mu)
 
 
 def _active(

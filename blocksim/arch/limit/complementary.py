@@ -17,10 +17,9 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from blocksim.arch.circular import Weight, centroid_factor
-from blocksim.arch.limit.collapse import Collapse
-from blocksim.arch.limit.mechanism import Conditions, conditions, motions_of, solve
-from blocksim.arch.modes import ActiveJoint, Mode, name_mode
+from blocksim.arch.limit.collapse import Collapse, of_half
+from blocksim.arch.limit.mechanism import Conditions, conditions, mode_of, solve
+from blocksim.arch.modes import Mode
 from blocksim.blocks.assembly import Array
 
 REACHED = 1e-9
@@ -104,10 +103,8 @@ def joints_through(half_angle: float, places: Sequence[float], voussoirs: int) -
     return np.concatenate(found)
 
 
-def complementary(
-    angles: Array, eta: float, mu: float, weight: Weight = "centreline"
-) -> Complementary:
-    """Solve eqs (15) and (16) for a symmetric arch of voussoirs.
+def complementary(angles: Array, eta: float, mu: float) -> Complementary:
+    """Solve eqs (15) and (16) for a symmetric arch of voussoirs that weighs at its centreline.
 
     Parameters
     ----------
@@ -115,18 +112,17 @@ def complementary(
         Joints of one half, the crown at 0 first, the springing last [rad].
     eta, mu : float
         Thickness-to-radius ratio; friction coefficient, inf allowed.
-    weight : {"centreline", "sector"}
-
-    Returns
-    -------
-    Complementary
     """
-    program = conditions(angles, eta, mu, centroid_factor(eta, weight), symmetric=True)
+    program = conditions(angles, eta, mu, 1.0)
     state, extra, _ = solve(program)
     strength = program.matrix @ state + program.offset
     reached = np.flatnonzero(strength >= -REACHED).tolist() if abs(extra) < REACHED else []
     modes = tuple(
-        _mode(angles, rates, eta, mu, float(-strength @ rates))
+        ComplementaryMode(
+            mode=mode_of(angles, rates.reshape(-1, 4) > 0, SAME),
+            collapse=of_half(angles, rates.reshape(-1, 4), eta, mu),
+            product=float(-strength @ rates),
+        )
         for rates in _extreme(program, reached)
     )
     return Complementary(
@@ -156,20 +152,3 @@ def _extreme(program: Conditions, reached: Sequence[int]) -> Iterator[Array]:
                 whole = np.zeros(len(program.offset))
                 whole[list(rows)] = rates
                 yield whole
-
-
-def _mode(
-    angles: Array, rates: Array, eta: float, mu: float, product: float
-) -> ComplementaryMode:
-    """Name a mechanism, and mirror it to the other half."""
-    half = rates.reshape(-1, 4)
-    active = [
-        ActiveJoint(float(angles[joint]), slides=kind >= 2, intrados=kind == 1)
-        for joint, kind in np.argwhere(half > 0).tolist()
-    ]
-    # Each joint of the half stands for two, but for the one at the crown.
-    shared = half * np.where(angles == 0, 1.0, 0.5)[:, None]
-    every = np.concatenate([-angles[:0:-1], angles])
-    both = np.concatenate([shared[:0:-1], shared])
-    collapse = Collapse(angles=every, rates=both, motions=motions_of(every, both, eta, mu))
-    return ComplementaryMode(mode=name_mode(active, SAME), collapse=collapse, product=product)

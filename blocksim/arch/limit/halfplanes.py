@@ -20,14 +20,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from blocksim.arch.circular import Weight
 from blocksim.blocks.assembly import Array
 from blocksim.common.series import lag_series, p_series
 
+Value = TypeVar("Value", float, Array)
 FEW = 48
 """Joints of which all pairs are looked at; of more, so many at first."""
 
@@ -61,6 +63,21 @@ class Bounds(NamedTuple):
     def broken(self) -> Array:
         """Whether a condition no thrust can change is not met."""
         return (self.rate == 0) & (self.level < 0)
+
+
+def half_joints(half_angle: float | Array, voussoirs: int) -> Array:
+    """Angles of the joints from the crown to the right springing, a row for each arch [rad].
+
+    The first is 0 for an even number of voussoirs, alpha/n for an odd one.
+    """
+    first = voussoirs % 2
+    count = voussoirs // 2 + 1
+    return np.asarray(half_angle)[..., None] * (2.0 * np.arange(count) + first) / voussoirs
+
+
+def spread_of(eta: Value, weight: Weight) -> Value:
+    """Radius of the distributed weight over the mean radius, less 1."""
+    return 0.0 * eta if weight == "centreline" else eta**2 / 12
 
 
 class Joints:
@@ -131,7 +148,6 @@ def turning(joints: Joints, depth: Array, spread: Array) -> Bounds:
 
     Parameters
     ----------
-    joints : Joints
     depth : (k,) float
         Thickness over radius that the line of thrust may use.
     spread : (k,) float
@@ -213,7 +229,6 @@ def sliding(joints: Joints, mu: Array, sign: float) -> Bounds:
 
     Parameters
     ----------
-    joints : Joints
     mu : (k,) float
         Friction coefficients, finite.
     sign : float

@@ -38,7 +38,6 @@ from blocksim.blocks.assembly import Array
 from blocksim.common.checks import ANY_FRICTION
 from blocksim.limit.linear import LinearProgramme
 
-ETA_MAX = 2.0
 ACTIVE = 1e-9
 """Rates, and distances to a condition, below which HiGHS means zero."""
 AT_LIMIT = 1e-10
@@ -47,43 +46,52 @@ SPARE = 1.0
 """Strength to spare looked for at most: a flat arch has any amount at a great thrust."""
 CLOSER = 1e-6
 """Unit in which the program is solved the second time."""
-STEPS = 60
 CONDITIONS = ("hinge-extrados", "hinge-intrados", "slides-out", "slides-in")
 """Order of the columns of `Mechanism.strength` and `Mechanism.rates`."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Mechanism:
-    """Statics and kinematics of an arch at or below its least thickness.
+class Collapse:
+    """A symmetric mechanism.
 
     Parameters
     ----------
-    angles : (n + 1,) float
-        Joints from the left springing to the right one [rad].
+    angles : (k,) float
+        Joints from the left springing to the right one, all or those that are active [rad].
+    rates : (k, 4) float
+        Rates of opening and of sliding, in the order of `CONDITIONS`, which add up to one; all
+        0 where it stands.
+    motions : (k - 1, 3) float
+        Velocity of each piece between them, with associated sliding: of its point at the centre
+        of the arch (to the right, upwards) and its rotation (counter-clockwise), r = 1.
+    """
+
+    angles: Array
+    rates: Array
+    motions: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Mechanism(Collapse):
+    """Statics and kinematics of an arch of n voussoirs at or below its least thickness.
+
+    Parameters
+    ----------
     extra_strength : float
         s, in units of gamma t d r^2; 0 at the least thickness, below 0 where it stands.
     strength : (n + 1, 4) float
         Left sides of the strength conditions less s, in the order of `CONDITIONS`.
-    rates : (n + 1, 4) float
-        Rates of opening and of sliding, which add up to one; all 0 where it stands.
-    thrust, crown_shear, crown_moment : float
-        Scaled resultant at the crown: h, v and the moment m about the centre.
-    motions : (n, 3) float
-        Velocity of each voussoir, with associated sliding: of its point at the centre of
-        the arch (to the right, upwards) and its rotation (counter-clockwise), r = 1.
+    thrust, crown_moment : float
+        Scaled resultant at the crown: h, and its moment m about the centre.
     mode : Mode or None
         Collapse mode at this thickness, which far below the least need not be that at the
         least; None where it stands or the joints form none of the seven.
     """
 
-    angles: Array
     extra_strength: float
     strength: Array
-    rates: Array
     thrust: float
-    crown_shear: float
     crown_moment: float
-    motions: Array
     mode: Mode | None
 
     @property
@@ -98,25 +106,15 @@ class Conditions:
 
     matrix: Array
     offset: Array
-    force: Array
-    force_offset: Array
-    lift: Array
 
 
-def mechanism(arch: Arch, mu: float, *, symmetric: bool = True) -> Mechanism:
-    """Find statics and collapse mechanism of an arch (15), (16).
+def mechanism(arch: Arch, mu: float) -> Mechanism:
+    """Find statics and collapse mechanism of an arch (15), (16), symmetric as in the paper.
 
     Parameters
     ----------
-    arch : Arch
     mu : float
         Friction coefficient, inf allowed.
-    symmetric : bool
-        Look for symmetric states and mechanisms only, as the paper does.
-
-    Returns
-    -------
-    Mechanism
 
     Raises
     ------
@@ -124,48 +122,32 @@ def mechanism(arch: Arch, mu: float, *, symmetric: bool = True) -> Mechanism:
         If `mu` is out of range.
     """
     ANY_FRICTION.require("mu", mu)
-    angles = arch.joint_angles
-    half = angles >= 0 if symmetric else np.full(angles.size, True)
-    program = conditions(angles[half], arch.eta, mu, arch.centroid_factor, symmetric=symmetric)
+    half = arch.joint_angles[arch.joint_angles >= 0]
+    program = conditions(half, arch.eta, mu, arch.centroid_factor)
     state, extra, rates = solve(program)
     if extra < -AT_LIMIT:
         rates = np.zeros_like(rates)
     strength = (program.matrix @ state + program.offset - extra).reshape(-1, 4)
-    rates = rates.reshape(-1, 4)
-    if symmetric:
-        # Each joint of the half stands for two, but for the one at the crown.
-        shared = np.where(angles[half] == 0, 1.0, 0.5)[:, None]
-        mirrored = slice(None, None, -1) if arch.voussoirs % 2 else slice(None, 0, -1)
-        rates = np.concatenate([(rates * shared)[mirrored], rates * shared])
-        strength = np.concatenate([strength[mirrored], strength])
-        state = np.array([state[0], 0.0, state[1]])
+    found = of_half(half, rates.reshape(-1, 4), arch.eta, mu)
     return Mechanism(
-        angles=angles,
+        **vars(found),
         extra_strength=extra,
-        strength=strength,
-        rates=rates,
+        strength=both_halves(half, strength)[1],
         thrust=float(state[0]),
-        crown_shear=float(state[1]),
-        crown_moment=float(state[2]),
-        motions=motions_of(angles, rates, arch.eta, mu),
-        mode=_mode(arch, rates),
+        crown_moment=float(state[1]),
+        mode=mode_of(
+            found.angles, _moving(found.rates), crown_width(arch.half_angle, arch.voussoirs)
+        ),
     )
 
 
-def conditions(
-    angles: Array, eta: float, mu: float, factor: float, *, symmetric: bool
-) -> Conditions:
-    """Write the conditions in h, v and m, or in h and m alone."""
-    size = np.abs(angles)
-    side = np.where(angles < 0, -1.0, 1.0)
-    sine, cosine, zero = np.sin(size), np.cos(size), np.zeros(angles.size)
-    force = np.column_stack([cosine, side * sine, zero])
-    force_offset = size * sine
-    shear = np.column_stack([sine, -side * cosine, zero])
-    shear_offset = -size * cosine
-    lift = 1.0 - cosine
-    moment = np.column_stack([zero, zero, zero + 1.0]) - force
-    moment_offset = factor * lift - force_offset
+def conditions(angles: Array, eta: float, mu: float, factor: float) -> Conditions:
+    """Write the conditions in h and m, at joints of one half."""
+    sine, cosine, zero = np.sin(angles), np.cos(angles), np.zeros(angles.size)
+    force, force_offset = np.column_stack([cosine, zero]), angles * sine
+    shear, shear_offset = np.column_stack([sine, zero]), -angles * cosine
+    moment = np.column_stack([zero, zero + 1.0]) - force
+    moment_offset = factor * (1.0 - cosine) - force_offset
     depth = eta / 2
     # At infinite friction the conditions on T become -1 <= 0.
     grip, push, idle = (mu, 1.0, 0.0) if np.isfinite(mu) else (0.0, 0.0, 1.0)
@@ -181,15 +163,8 @@ def conditions(
         push * shear_offset - grip * force_offset - idle,
         -push * shear_offset - grip * force_offset - idle,
     ]
-    matrix = np.stack(rows, axis=1).reshape(-1, 3)
-    columns = [0, 2] if symmetric else [0, 1, 2]
-    return Conditions(
-        matrix=matrix[:, columns],
-        offset=np.stack(offsets, axis=1).reshape(-1),
-        force=force[:, columns],
-        force_offset=force_offset,
-        lift=lift,
-    )
+    matrix = np.stack(rows, axis=1).reshape(-1, 2)
+    return Conditions(matrix=matrix, offset=np.stack(offsets, axis=1).reshape(-1))
 
 
 def solve(program: Conditions) -> tuple[Array, float, Array]:
@@ -254,10 +229,26 @@ def _moving(rates: Array) -> NDArray[np.bool_]:
     return rates > ACTIVE * max(float(rates.max()), ACTIVE)
 
 
-def _mode(arch: Arch, rates: Array) -> Mode | None:
+def mode_of(angles: Array, moving: NDArray[np.bool_], crown: float) -> Mode | None:
+    """Name the mode of the conditions that move at some joints, (joints, 4)."""
     active = [
-        ActiveJoint(abs(angle), slides=k >= 2, intrados=k == 1)
-        for angle, row in zip(arch.joint_angles.tolist(), _moving(rates), strict=True)
-        for k in np.flatnonzero(row).tolist()
+        ActiveJoint(abs(float(angles[joint])), slides=kind >= 2, intrados=kind == 1)
+        for joint, kind in np.argwhere(moving).tolist()
     ]
-    return name_mode(active, crown_width(arch.half_angle, arch.voussoirs)) if active else None
+    return name_mode(active, crown) if active else None
+
+
+def both_halves(angles: Array, values: Array) -> tuple[Array, Array]:
+    """Return the joints of the whole arch, and what is said of each of them, from one half.
+
+    The half begins at the crown, whether a joint is there or not.
+    """
+    kept = slice(None, 0, -1) if angles[0] == 0 else slice(None, None, -1)
+    return np.concatenate([-angles[kept], angles]), np.concatenate([values[kept], values])
+
+
+def of_half(angles: Array, rates: Array, eta: float, mu: float) -> Collapse:
+    """Return the mechanism of a whole arch from the rates of one half of it."""
+    # Each joint of it stood for two, but for one at the crown.
+    every, both = both_halves(angles, rates * np.where(angles == 0, 1.0, 0.5)[:, None])
+    return Collapse(angles=every, rates=both, motions=motions_of(every, both, eta, mu))

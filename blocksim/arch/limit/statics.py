@@ -13,25 +13,30 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from blocksim.arch.circular import Arch, Weight, crown_width
-from blocksim.arch.limit.halfplanes import Bounds, Joints, least_met, sliding, turning
+from blocksim.arch.circular import ETA_MAX, Arch, Weight, crown_width
+from blocksim.arch.limit.halfplanes import (
+    Bounds,
+    Joints,
+    half_joints,
+    least_met,
+    sliding,
+    spread_of,
+    turning,
+)
 from blocksim.arch.modes import ActiveJoint, Mode, name_mode
+from blocksim.arch.roots import least_root
 from blocksim.blocks.assembly import Array
 from blocksim.common.checks import ANY_FRICTION
 
-Value = TypeVar("Value", float, Array)
-ETA_MAX = 2.0
 ROUGHLY = 1e-3
 """Precision at which the joints that act are known well enough to start from."""
 HOPELESS = 1e6
 """Multiple of its strength beyond which an arch counts as never standing."""
-ASIDE, PATIENCE = 0.2, 3
-"""How far estimates are moved, and how many may narrow an interval by less than four."""
 
 
 class Bound(NamedTuple):
@@ -47,6 +52,10 @@ class Bound(NamedTuple):
     extrados: int = -1
     intrados: int = -1
     slides: int = -1
+
+
+Least = tuple[float | None, tuple[Bound, Bound]]
+"""The least value that suffices, None where none does, and bounds on the thrust at it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,24 +88,9 @@ class LimitState:
         return self.eta is not None and eta >= self.eta
 
 
-def half_joints(half_angle: float | Array, voussoirs: int) -> Array:
-    """Angles of the joints from the crown to the right springing, a row for each arch [rad].
-
-    The first is 0 for an even number of voussoirs, alpha/n for an odd one.
-    """
-    first = voussoirs % 2
-    count = voussoirs // 2 + 1
-    return np.asarray(half_angle)[..., None] * (2.0 * np.arange(count) + first) / voussoirs
-
-
 def joints_of(arch: Arch) -> Joints:
     """Return the joints of one half of an arch."""
     return Joints(half_joints(arch.half_angle, arch.voussoirs)[None])
-
-
-def spread_of(eta: Value, weight: Weight) -> Value:
-    """Radius of the distributed weight over the mean radius, less 1."""
-    return 0.0 * eta if weight == "centreline" else eta**2 / 12
 
 
 def thrust_bounds(
@@ -185,10 +179,10 @@ def _placed(bound: Bound, places: NDArray[np.int64]) -> Bound:
     return bound._replace(extrados=extrados, intrados=intrados)
 
 
-def admissible(bounds: tuple[Bound, Bound]) -> bool:
-    """Whether any thrust is between two bounds."""
-    lower, upper = bounds
-    return lower.short >= upper.short
+def bounds_of(arch: Arch, mu: float, share: float = 1.0) -> tuple[Bound, Bound]:
+    """Interval of thrusts of an arch with a share of its thickness and of its friction."""
+    spread = spread_of(arch.eta, arch.weight)
+    return thrust_bounds(joints_of(arch), share * arch.eta, share * mu, spread)
 
 
 def _gap(bounds: tuple[Bound, Bound]) -> float:
@@ -199,9 +193,7 @@ def _gap(bounds: tuple[Bound, Bound]) -> float:
 
 def stands(arch: Arch, mu: float) -> bool:
     """Tell whether the arch has an equilibrium within strength (static theorem)."""
-    joints = joints_of(arch)
-    spread = spread_of(arch.eta, arch.weight)
-    return admissible(thrust_bounds(joints, arch.eta, mu, spread))
+    return _gap(bounds_of(arch, mu)) >= 0
 
 
 def slack(arch: Arch, mu: float) -> float:
@@ -209,7 +201,6 @@ def slack(arch: Arch, mu: float) -> float:
 
     Parameters
     ----------
-    arch : Arch
     mu : float
         Friction coefficient, inf allowed.
 
@@ -222,7 +213,7 @@ def slack(arch: Arch, mu: float) -> float:
     """
     ANY_FRICTION.require("mu", mu)
     share, _ = _least_share(arch, mu, 0.0)
-    return 1.0 - share
+    return -math.inf if share is None else 1.0 - share
 
 
 def least_friction(arch: Arch) -> float | None:
@@ -233,20 +224,8 @@ def least_friction(arch: Arch) -> float | None:
     float or None
         None where no friction suffices.
     """
-    joints = joints_of(arch)
-    spread = spread_of(arch.eta, arch.weight)
-
-    def gap(mu: float) -> float:
-        return _gap(thrust_bounds(joints, arch.eta, mu, spread))
-
-    if gap(math.inf) < 0:
-        return None
-    low, high = 0.0, 1.0
-    if gap(low) >= 0:
-        return low
-    while gap(high) < 0:
-        low, high = high, 2.0 * high
-    return _boundary(gap, low, high)
+    joints, spread = joints_of(arch), spread_of(arch.eta, arch.weight)
+    return _least(lambda mu: thrust_bounds(joints, arch.eta, mu, spread), math.inf)[0]
 
 
 def weakest_joints(arch: Arch, mu: float) -> tuple[int, ...]:
@@ -254,7 +233,6 @@ def weakest_joints(arch: Arch, mu: float) -> tuple[int, ...]:
 
     Parameters
     ----------
-    arch : Arch
     mu : float
         Friction coefficient, inf allowed.
 
@@ -264,34 +242,44 @@ def weakest_joints(arch: Arch, mu: float) -> tuple[int, ...]:
         Indices into `half_joints`; none where no strength suffices.
     """
     share, bounds = _least_share(arch, mu, ROUGHLY)
-    if math.isinf(share):
+    if share is None:
         return ()
     places = {place for bound in bounds for place in bound[2:]}
     return tuple(sorted(places - {-1}))
 
 
-def _least_share(arch: Arch, mu: float, precision: float) -> tuple[float, tuple[Bound, Bound]]:
+def _least_share(arch: Arch, mu: float, precision: float) -> Least:
     """Return the least share of thickness and friction with which an arch stands."""
-    joints = joints_of(arch)
-    spread = spread_of(arch.eta, arch.weight)
+    joints, spread = joints_of(arch), spread_of(arch.eta, arch.weight)
+    return _least(
+        lambda share: thrust_bounds(joints, share * arch.eta, share * mu, spread),
+        HOPELESS,
+        precision,
+    )
 
-    @cache
-    def bounds(share: float) -> tuple[Bound, Bound]:
-        return thrust_bounds(joints, share * arch.eta, share * mu, spread)
 
-    def gap(share: float) -> float:
-        return _gap(bounds(share))
+def _least(
+    bounds: Callable[[float], tuple[Bound, Bound]], most: float, precision: float = 0.0
+) -> Least:
+    """Return the least value at which any thrust is between bounds, and these.
 
-    low, high = 0.0, 1.0
+    None, with the bounds at `most`, where none up to that is enough. Three voussoirs can stand
+    with nothing at all.
+    """
+    known = cache(bounds)
+
+    def gap(value: float) -> float:
+        return _gap(known(value))
+
+    if gap(most) < 0:
+        return None, known(most)
+    low, high = 0.0, min(1.0, most)
     if gap(low) >= 0:
-        # Three voussoirs can stand however thin they are.
-        return low, bounds(low)
+        return low, known(low)
     while gap(high) < 0:
-        low, high = high, 2.0 * high
-        if high > HOPELESS:
-            return math.inf, bounds(high)
-    share = _boundary(gap, low, high, precision)
-    return share, bounds(share)
+        low, high = high, min(2.0 * high, most)
+    value = least_root(gap, low, high, precision)
+    return value, known(value)
 
 
 def least_thickness(
@@ -342,58 +330,17 @@ def least_thickness(
     )
 
 
-def least_of(
-    joints: Joints, mu: float, weight: Weight
-) -> tuple[float | None, tuple[Bound, Bound]]:
+def least_of(joints: Joints, mu: float, weight: Weight) -> Least:
     """Least thickness for joints of one half of an arch, and bounds on the thrust there.
 
     None where none up to `ETA_MAX` stands, with the bounds at that.
     """
     slides = friction_bounds(joints, mu)
-
-    @cache
-    def bounds(eta: float) -> tuple[Bound, Bound]:
-        return thrust_bounds(joints, eta, mu, spread_of(eta, weight), slides)
-
-    def gap(eta: float) -> float:
-        return _gap(bounds(eta))
-
-    eta = None if gap(ETA_MAX) < 0 else 0.0
-    if eta is not None and gap(0.0) < 0:
-        eta = _boundary(gap, 0.0, ETA_MAX)
-    return eta, bounds(ETA_MAX if eta is None else eta)
+    return _least(
+        lambda eta: thrust_bounds(joints, eta, mu, spread_of(eta, weight), slides), ETA_MAX
+    )
 
 
 def _places(angles: Array, *indices: int) -> tuple[float, ...]:
     """Angles of the joints a pair of bounds names, each once."""
     return tuple(float(angles[i]) for i in sorted(set(indices) - {-1}))
-
-
-def _boundary(
-    gap: Callable[[float], float], low: float, high: float, precision: float = 0.0
-) -> float:
-    """Smallest value in (low, high] at which a growing gap is not below 0.
-
-    As precisely as asked for, or to the last bit. `high` is such a value. Each estimate is
-    by a straight line through both ends, moved a little towards the middle so that the next
-    one comes from the other side; where that does not narrow the interval it is halved.
-    """
-    whole, below, above = high - low, gap(low), gap(high)
-    slow = 0
-    while True:
-        width, middle = high - low, (low + high) / 2
-        if middle in {low, high} or width <= precision * high:
-            return high
-        value = middle
-        if slow < PATIENCE and math.isfinite(above - below):
-            line = low - below * (width / (above - below))
-            aside = max(ASIDE * width**2 / whole, 2.0**slow * math.ulp(line))
-            value = line + math.copysign(min(aside, abs(middle - line)), middle - line)
-            if not low < value < high:
-                value = middle
-        found = gap(value)
-        if found >= 0:
-            high, above = value, found
-        else:
-            low, below = value, found
-        slow = 0 if value == middle or high - low < width / 4 else slow + 1

@@ -7,19 +7,16 @@ of that interval nearest to the rotational one, and where it lies names the mode
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from blocksim.arch.circular import WEIGHTS, Weight
+from blocksim.arch.circular import ETA_MAX, Weight, checked_arrays
 from blocksim.arch.modes import Mode
-from blocksim.arch.theory.equations import ETA_MAX
 from blocksim.arch.theory.rotation import inner_hinges, rotational_mode, widest_rotational
 from blocksim.arch.theory.sliding import Thrusts, excess, thrust_intervals
 from blocksim.blocks.assembly import Array
-from blocksim.common.checks import require
 
 TIE = 1e-12
 """Angles closer than this coincide, and thrusts whose h and 1 - h differ relatively by less."""
@@ -99,17 +96,7 @@ def least_thicknesses(
     InputError
         If a value is out of range.
     """
-    angles, frictions = np.broadcast_arrays(
-        np.asarray(half_angle, dtype=float), np.asarray(mu, dtype=float)
-    )
-    for field, values, upto, allowed in (
-        ("half_angle", angles, math.nextafter(math.pi, 0), "above 0 and below pi"),
-        ("mu", frictions, math.inf, "above 0 (inf for unbounded friction)"),
-    ):
-        wrong = ~((values > 0) & (values <= upto))
-        if wrong.any():
-            require(False, field, float(values[wrong].flat[0]), allowed)
-    require(weight in WEIGHTS, "weight", weight, f"one of {', '.join(WEIGHTS)}")
+    angles, frictions = checked_arrays(weight, half_angle=half_angle, mu=mu)
     shape, size = angles.shape, angles.size
     numbers = np.empty((4, size))
     modes = np.empty(size, dtype=np.uint8)
@@ -132,7 +119,6 @@ def stand_at(eta: Array, alpha: Array, mu: Array, weight: Weight) -> NDArray[np.
     ----------
     eta, alpha, mu : (k,) float
         As in `least_thicknesses`, unchecked.
-    weight : {"centreline", "sector"}
 
     Returns
     -------

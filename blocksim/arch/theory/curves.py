@@ -7,11 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from blocksim.arch.roots import root
 from blocksim.arch.theory.equations import shape
 from blocksim.arch.theory.map import special_angles
 from blocksim.arch.theory.regions import divide_half_angle
-from blocksim.arch.theory.roots import root
 from blocksim.blocks.assembly import Array
+
+BRANCH, CURVE = 200, 400
+"""Points on each branch, and on the curve of sliding."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -50,13 +53,8 @@ class SlidingCurve:
     thrust: Array
 
 
-def rotational_branches(points: int = 200) -> tuple[RotationalBranch, RotationalBranch]:
+def rotational_branches() -> tuple[RotationalBranch, RotationalBranch]:
     """Give the two branches of eq. (7), with its upper and with its lower signs.
-
-    Parameters
-    ----------
-    points : int
-        Points on each branch.
 
     Returns
     -------
@@ -67,12 +65,16 @@ def rotational_branches(points: int = 200) -> tuple[RotationalBranch, Rotational
     """
     special = special_angles()
     # Denser towards the end that both share, where alpha goes as a root.
-    rising = special.hinge * (1 - np.linspace(1.0, 0.0, points) ** 2)
-    upper = _branch(rising[1:], 1.0)
-    lower = _branch(rising[1:][::-1], -1.0)
-    start = (0.0, 0.0, 0.0, 1.0)
-    end = (special.zero_thrust, 0.0, 1.0, 0.0)
-    return _joined(start, upper, None), _joined(None, lower, end)
+    rising = special.hinge * (1 - np.linspace(1.0, 0.0, BRANCH) ** 2)
+    # At one end of each (7) is 0/0.
+    start, end = (0.0, 0.0, 0.0, 1.0), (special.zero_thrust, 0.0, 1.0, 0.0)
+    upper = np.column_stack([start, _branch(rising[1:], 1.0)])
+    lower = np.column_stack([_branch(rising[1:][::-1], -1.0), end])
+    one, other = (
+        RotationalBranch(half_angle=alpha, beta_r=beta, eta=eta, thrust=thrust)
+        for alpha, beta, eta, thrust in (upper, lower)
+    )
+    return one, other
 
 
 def _branch(beta: Array, sign: float) -> Array:
@@ -92,31 +94,13 @@ def _half_angle(level: float) -> float:
     return root(lambda angle: float(shape(angle)) - level, 1e-9, 3.1)
 
 
-def _joined(
-    start: tuple[float, ...] | None, rows: Array, end: tuple[float, ...] | None
-) -> RotationalBranch:
-    """Put the ends, at which (7) is 0/0, to a branch."""
-    ends = [None if each is None else np.array(each)[:, None] for each in (start, end)]
-    parts = [part for part in (ends[0], rows, ends[1]) if part is not None]
-    alpha, beta, eta, thrust = np.concatenate(parts, axis=1)
-    return RotationalBranch(half_angle=alpha, beta_r=beta, eta=eta, thrust=thrust)
-
-
-def sliding_curve(points: int = 400) -> SlidingCurve:
+def sliding_curve() -> SlidingCurve:
     """Give thrust and angle of inner sliding, from no friction to unbounded friction.
 
     With h = cos^2(E/2) eq. (9) is mu = tan((E - sin E)/2), for E from 0 to pi.
-
-    Parameters
-    ----------
-    points : int
-
-    Returns
-    -------
-    SlidingCurve
     """
     # Denser towards pi, where half of the range of alpha is.
-    anomaly = math.pi * (1 - np.linspace(1.0, 0.0, points)[1:-1] ** 2)
+    anomaly = math.pi * (1 - np.linspace(1.0, 0.0, CURVE)[1:-1] ** 2)
     thrust, beta_s = np.cos(anomaly / 2) ** 2, np.sin(anomaly) / 2
     mu = np.tan((anomaly - np.sin(anomaly)) / 2)
     alpha = [divide_half_angle(each) for each in mu.tolist()]

@@ -13,8 +13,6 @@ from blocksim.blocks.assembly import Array
 
 Value = float | Array
 
-ETA_MAX = 2.0
-"""Largest thickness ratio: the intrados has shrunk to the centre."""
 BEYOND = 4.0
 """Stands for a thickness ratio that does not exist; ratios end at 2."""
 
@@ -62,7 +60,6 @@ def touching_eta(
         h.
     extrados, intrados : float or array
         Angles of the two sections [rad].
-    weight : {"centreline", "sector"}
 
     Returns
     -------
@@ -89,7 +86,6 @@ def hinge_slope(thrust: float, extrados: float, beta: float, weight: Weight) -> 
     ----------
     thrust, extrados, beta : float
         h; angles of the extrados hinge and of the place asked about [rad].
-    weight : {"centreline", "sector"}
 
     Returns
     -------

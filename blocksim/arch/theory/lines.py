@@ -42,7 +42,6 @@ def thrust_line(
         the centre of the crown joint).
     eta : float or array
         Thickness-to-radius ratio.
-    weight : {"centreline", "sector"}
 
     Returns
     -------

@@ -16,12 +16,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from blocksim.arch.circular import WEIGHTS, Weight, centroid_factor
+from blocksim.arch.circular import (
+    ETA_MAX,
+    Weight,
+    centroid_factor,
+    checked_arrays,
+    require_weight,
+)
 from blocksim.arch.modes import Mode
+from blocksim.arch.roots import root
 from blocksim.arch.theory.arrays import BIT, least_thicknesses, names_of, stand_at
-from blocksim.arch.theory.equations import ETA_MAX, shape
+from blocksim.arch.theory.equations import shape
 from blocksim.arch.theory.regions import Curve, divide_half_angle
-from blocksim.arch.theory.roots import root
 from blocksim.arch.theory.rotation import rotational_mode
 from blocksim.arch.theory.sliding import excess, thrust_intervals
 from blocksim.blocks.assembly import Array
@@ -87,7 +93,6 @@ def at_points(eta: ArrayLike, mu: ArrayLike, weight: Weight = "centreline") -> M
         In (0, 2].
     mu : (...) float
         Above 0, inf allowed; broadcast against `eta`.
-    weight : {"centreline", "sector"}
 
     Returns
     -------
@@ -99,15 +104,9 @@ def at_points(eta: ArrayLike, mu: ArrayLike, weight: Weight = "centreline") -> M
     InputError
         If a value is out of range.
     """
-    ratio, friction = np.broadcast_arrays(
-        np.asarray(eta, dtype=float), np.asarray(mu, dtype=float)
-    )
+    ratio, friction = checked_arrays(weight, eta=eta, mu=mu)
     shape_asked = ratio.shape
     ratio, friction = ratio.reshape(-1), friction.reshape(-1)
-    wrong = ~((ratio > 0) & (ratio <= ETA_MAX))
-    if wrong.any():
-        require(False, "eta", float(ratio[wrong].flat[0]), "above 0 and at most 2")
-    least_thicknesses(1.0, friction, weight)  # names a wrong friction or weight
     low, high = np.zeros(ratio.shape), np.full(ratio.shape, math.pi)
     for _ in range(HALVINGS):
         middle = (low + high) / 2
@@ -149,7 +148,6 @@ def iso_half_angle(half_angle: float, mu: ArrayLike, weight: Weight = "centrelin
         alpha, in (0, pi) [rad].
     mu : (k,) float
         Friction coefficients; those that need more than a thickness of 2 are left out.
-    weight : {"centreline", "sector"}
 
     Returns
     -------
@@ -164,7 +162,7 @@ def iso_half_angle(half_angle: float, mu: ArrayLike, weight: Weight = "centrelin
 
 def special_angles(weight: Weight = "centreline") -> SpecialAngles:
     """Half-angles alpha_s-beta, alpha_l and alpha_L, from what defines each of them."""
-    require(weight in WEIGHTS, "weight", weight, f"one of {', '.join(WEIGHTS)}")
+    require_weight(weight)
     # Hinge and thrust at 0: eq. (4) leaves 1 = kappa/(1 - eta/2) - 1, see sector.md.
     ratio = 1.0 if weight == "centreline" else math.sqrt(48) - 6
     widest, hinge = _widest_hinge(weight)

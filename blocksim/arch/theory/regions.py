@@ -8,20 +8,19 @@ sliding angle on the lines where an inner joint slides follow from the anomaly E
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from blocksim.arch.circular import Weight
+from blocksim.arch.circular import ETA_MAX, Weight
+from blocksim.arch.modes import Mode
+from blocksim.arch.roots import root
 from blocksim.arch.theory.critical import inner_sliding, rotational_thrust
-from blocksim.arch.theory.equations import ETA_MAX, hinge_slope
-from blocksim.arch.theory.roots import root
+from blocksim.arch.theory.equations import hinge_slope
 from blocksim.arch.theory.rotation import inner_hinges, rotational_mode, widest_rotational
 from blocksim.arch.theory.sliding import (
-    Thrusts,
     inner_frictions,
     inner_slidings,
     shoulder_frictions,
@@ -36,13 +35,20 @@ WIDE_ARCH = 2.3
 
 @dataclass(frozen=True, kw_only=True)
 class Landmark:
-    """A point where lines of the map meet (Table 1).
+    """A point of the map: where lines meet (Table 1), of a special angle, or on a line.
 
     Parameters
     ----------
     name : str
-        T, S, J or B.
-    half_angle, mu, eta, thrust, beta_r, beta_s : float
+        Letter of Table 1, name of a special angle, or of a line.
+    half_angle, mu, eta : float
+        alpha [rad]; friction coefficient, inf allowed; thickness-to-radius ratio.
+    thrust, beta_r : float
+        h; angle of the inner hinge [rad].
+    beta_s : float or None
+        Angle of the inner sliding joint [rad]; None where no mode has it.
+    modes : tuple of Mode
+        All that coincide there, where they are told.
     """
 
     name: str
@@ -51,7 +57,8 @@ class Landmark:
     eta: float
     thrust: float
     beta_r: float
-    beta_s: float
+    beta_s: float | None
+    modes: tuple[Mode, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -81,7 +88,7 @@ def divide_half_angle(mu: float) -> float:
         If it is not.
     """
     require(0 < mu < math.inf, "mu", mu, "above 0 and finite")
-    thrusts, friction_angle = _inner_thrusts(mu), math.atan(mu)
+    thrusts, friction_angle = inner_slidings(np.array([mu]))[0], math.atan(mu)
     short = float(thrusts.short[0])
     if short > 0.5:
         # Here it is h that is small.
@@ -106,20 +113,19 @@ def at_inner_sliding(mu: float, half_angle: float, weight: Weight) -> tuple[floa
     eta, beta_r : float
         The thickness may exceed 2, and then no arch has it.
     """
-    return _thickest(_inner_thrusts(mu).short, np.array([half_angle]), weight)
+    eta, beta_r = _at_inner_sliding(np.array([mu]), np.array([half_angle]), weight)
+    return float(eta[0]), float(beta_r[0])
 
 
-def _thickest(short: Array, half_angle: Array, weight: Weight) -> tuple[float, float]:
+def _at_inner_sliding(mu: Array, half_angle: Array, weight: Weight) -> tuple[Array, Array]:
     """Larger of the thicknesses that crown and shoulder ask for, with its inner hinge."""
-    found: list[tuple[float, float]] = []
-    for extrados in (0 * half_angle, half_angle):
-        eta, square = inner_hinges(short, extrados, half_angle, weight)
-        found.append((float(eta[0]), math.sqrt(float(square[0]))))
-    return max(found)
-
-
-def _inner_thrusts(mu: float) -> Thrusts:
-    return inner_slidings(np.array([mu]))[0]
+    short = inner_slidings(mu)[0].short
+    (crown, near), (shoulder, far) = (
+        inner_hinges(short, extrados, half_angle, weight)
+        for extrados in (0 * half_angle, half_angle)
+    )
+    higher = shoulder > crown
+    return np.where(higher, shoulder, crown), np.sqrt(np.where(higher, far, near))
 
 
 def landmarks(weight: Weight = "centreline") -> dict[str, Landmark]:
@@ -145,10 +151,11 @@ def _landmarks(weight: Weight) -> dict[str, Landmark]:
         return rotational_thrust(divide_half_angle(mu), weight) - inner_sliding(mu)[0]
 
     def shift(mu: float) -> float:
-        return _equal_angles(mu, divide_half_angle(mu), weight)
+        thrust, beta_s = inner_sliding(mu)
+        return hinge_slope(thrust, divide_half_angle(mu), beta_s, weight)
 
     def junction(mu: float) -> float:
-        return _crown_hinge(mu, divide_half_angle(mu), weight)
+        return hinge_slope(inner_sliding(mu)[0], divide_half_angle(mu), 0.0, weight)
 
     def border(mu: float) -> float:
         return at_inner_sliding(mu, divide_half_angle(mu), weight)[0] - ETA_MAX
@@ -187,11 +194,6 @@ def divide(mu: ArrayLike, weight: Weight = "centreline") -> Curve:
     ----------
     mu : (k,) float
         Friction coefficients, above 0 and at most that of point B.
-    weight : {"centreline", "sector"}
-
-    Returns
-    -------
-    Curve
 
     Raises
     ------
@@ -200,7 +202,8 @@ def divide(mu: ArrayLike, weight: Weight = "centreline") -> Curve:
     """
     end = landmarks(weight)["B"].mu
     friction = _within(mu, 0.0, end, f"above 0 and at most {end:.10g}, where eta is 2")
-    eta = [at_inner_sliding(m, divide_half_angle(m), weight)[0] for m in friction.tolist()]
+    half_angle = np.array([divide_half_angle(m) for m in friction.tolist()])
+    eta, _ = _at_inner_sliding(friction, half_angle, weight)
     return Curve(mu=friction, eta=np.minimum(eta, ETA_MAX))
 
 
@@ -211,11 +214,6 @@ def first_sliding(half_angle: ArrayLike, weight: Weight = "centreline") -> Curve
     ----------
     half_angle : (k,) float
         Half-angles above 0 and below alpha_l, where the purely rotational mode ends [rad].
-    weight : {"centreline", "sector"}
-
-    Returns
-    -------
-    Curve
 
     Raises
     ------
@@ -238,60 +236,37 @@ def equal_angles(mu: ArrayLike, weight: Weight = "centreline") -> Curve:
     ----------
     mu : (k,) float
         Friction coefficients, that of point S or more, finite.
-    weight : {"centreline", "sector"}
-
-    Returns
-    -------
-    Curve
 
     Raises
     ------
     InputError
         If a friction coefficient is out of range.
     """
-    return _inner_line("S", _equal_angles, mu, weight)
+    return _inner_line("S", mu, weight)
 
 
 def crown_hinge(mu: ArrayLike, weight: Weight = "centreline") -> Curve:
-    """Line beta_r = 0, from J to the right (rsr | rs).
-
-    Parameters
-    ----------
-    mu : (k,) float
-        Friction coefficients, that of point J or more, finite.
-    weight : {"centreline", "sector"}
-
-    Returns
-    -------
-    Curve
-
-    Raises
-    ------
-    InputError
-        If a friction coefficient is out of range.
-    """
-    return _inner_line("J", _crown_hinge, mu, weight)
+    """Line beta_r = 0, from J to the right (rsr | rs), as `equal_angles`."""
+    return _inner_line("J", mu, weight)
 
 
-def _inner_line(
-    start: str,
-    condition: Callable[[float, float, Weight], float],
-    mu: ArrayLike,
-    weight: Weight,
-) -> Curve:
+def _inner_line(start: str, mu: ArrayLike, weight: Weight) -> Curve:
+    """Line where the thickness has no slope: at beta_s from S on, at the crown from J on."""
     point = landmarks(weight)[start]
     allowed = f"at least {point.mu:.10g}, where the line starts at {start}, and finite"
     friction = _within(mu, math.nextafter(point.mu, 0), math.nextafter(math.inf, 0), allowed)
-    eta: list[float] = []
+    half_angle: list[float] = []
     for m in friction.tolist():
-        end = divide_half_angle(m)
-        if condition(m, end, weight) * condition(m, WIDE_ARCH, weight) >= 0:
-            # At its start, to round-off, the line is on the divide.
-            alpha = end
-        else:
-            alpha = root(lambda angle, m=m: condition(m, angle, weight), WIDE_ARCH, end)
-        eta.append(at_inner_sliding(m, alpha, weight)[0])
-    return Curve(mu=friction, eta=np.array(eta))
+        end, (thrust, beta_s) = divide_half_angle(m), inner_sliding(m)
+        hinge = beta_s if start == "S" else 0.0
+
+        def slope(angle: float, thrust: float = thrust, hinge: float = hinge) -> float:
+            return hinge_slope(thrust, angle, hinge, weight)
+
+        # At its start, to round-off, the line is on the divide.
+        meets = slope(end) * slope(WIDE_ARCH) < 0
+        half_angle.append(root(slope, WIDE_ARCH, end) if meets else end)
+    return Curve(mu=friction, eta=_at_inner_sliding(friction, np.array(half_angle), weight)[0])
 
 
 def _within(mu: ArrayLike, above: float, upto: float, allowed: str) -> Array:
@@ -300,14 +275,3 @@ def _within(mu: ArrayLike, above: float, upto: float, allowed: str) -> Array:
     for m in friction.flat:
         require(above < m <= upto, "mu", float(m), allowed)
     return friction
-
-
-def _equal_angles(mu: float, half_angle: float, weight: Weight) -> float:
-    """Slope of the thickness at the inner sliding joint; 0 where the hinge is there."""
-    thrust, beta_s = inner_sliding(mu)
-    return hinge_slope(thrust, half_angle, beta_s, weight)
-
-
-def _crown_hinge(mu: float, half_angle: float, weight: Weight) -> float:
-    """Slope of the thickness at the crown; 0 where the hinge just reaches it."""
-    return hinge_slope(inner_sliding(mu)[0], half_angle, 0.0, weight)

@@ -23,9 +23,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from blocksim.arch.circular import Weight
-from blocksim.arch.theory.equations import BEYOND, ETA_MAX
-from blocksim.arch.theory.roots import root
+from blocksim.arch.circular import ETA_MAX, Weight
+from blocksim.arch.roots import root
+from blocksim.arch.theory.equations import BEYOND
 from blocksim.arch.theory.sliding import Thrusts
 from blocksim.blocks.assembly import Array
 from blocksim.common.files import write_whole
@@ -76,7 +76,6 @@ def inner_hinges(
         Angle of the extrados hinge: 0 for the crown, alpha for the shoulder [rad].
     half_angle : (k,) float
         alpha [rad].
-    weight : {"centreline", "sector"}
 
     Returns
     -------
@@ -163,7 +162,6 @@ def rotational_mode(alpha: Array, weight: Weight) -> tuple[Thrusts, Array, Array
     ----------
     alpha : (k,) float
         Half-angles [rad].
-    weight : {"centreline", "sector"}
 
     Returns
     -------

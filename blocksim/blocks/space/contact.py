@@ -8,14 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.space.polyhedron import Polyhedron, frame
+from blocksim.blocks.space.polyhedron import SAME, Polyhedron, frame
 
 Spot = tuple[float, float]
 """A point in a plane."""
 PARALLEL = 1e-9
 """Sine of the angle below which two edges have one direction."""
-SAME = 1 - 1e-14
-"""Cosine of the angle below which two planes are one."""
+RIM = 0.01
+"""Share of the slack by which bodies that touch exactly may be apart, or within each other."""
+ALONG = 0.999
+"""Cosine below which planes cross: what is within two of them is narrower than the slack."""
 
 
 class Contact(NamedTuple):
@@ -70,6 +72,8 @@ def contact(first: Polyhedron, second: Polyhedron, slack: float) -> Contact | Ov
             return None
         if widest < -slack:
             return Overlap(float(-widest))
+    elif gaps.max() <= RIM * slack and _at_rim(normals[gaps >= -RIM * slack]):
+        return None
     found: list[Contact] = []
     tried: list[Array] = []
     for index in np.argsort(-gaps).tolist():
@@ -83,6 +87,14 @@ def contact(first: Polyhedron, second: Polyhedron, slack: float) -> Contact | Ov
         if points is not None:
             found.append(Contact(points, normals[index], float(gaps[index])))
     return max(found, key=lambda each: _extent(each.points), default=None)
+
+
+def _at_rim(normals: Array) -> bool:
+    """Tell whether planes that part two bodies, which touch at each, have two directions.
+
+    All that is common lies in both then: at most a line along the rim of a face.
+    """
+    return bool((np.abs(normals @ normals[0]) < ALONG).any())
 
 
 def _by_faces(first: Polyhedron, second: Polyhedron) -> tuple[Array, Array]:
@@ -121,7 +133,6 @@ def _common(first: Polyhedron, second: Polyhedron, normal: Array, slack: float) 
     heights, beyond = first.corners @ normal, second.corners @ normal
     high, low = heights.max(), beyond.min()
     across = frame(normal)
-    middle = (high + low) / 2
     ours = _outline(first.corners[heights >= high - 2 * slack] @ across.T)
     theirs = _outline(second.corners[beyond <= low + 2 * slack] @ across.T)
     shared = _clipped(ours, theirs, slack)
@@ -131,9 +142,9 @@ def _common(first: Polyhedron, second: Polyhedron, normal: Array, slack: float) 
         crossing = len(ours) == len(theirs) == 2 and len(shared) == 1
         if not (crossing and _cross(ours, theirs)):
             return None
-    if needed == 3 and _narrow(shared) <= slack:
+    if needed == 3 and _is_narrow(shared, slack):
         return None
-    return shared @ across + middle * normal
+    return np.array(shared).reshape(-1, 2) @ across + (high + low) / 2 * normal
 
 
 def _spots(points: Array) -> list[Spot]:
@@ -141,13 +152,14 @@ def _spots(points: Array) -> list[Spot]:
     return [(x, y) for x, y in points.tolist()]
 
 
-def _outline(points: Array) -> Array:
+def _outline(points: Array) -> list[Spot]:
     """Return the corners of the hull of points in the plane, counter-clockwise.
 
     Andrew's monotone chain; points on a line are its two ends.
     """
     order = sorted(_spots(points))
-    scale = max(float(np.ptp(points, axis=0).max()), 1e-300)
+    heights = [y for _, y in order]
+    scale = max(order[-1][0] - order[0][0], max(heights) - min(heights), 1e-300)
 
     def chain(ordered: list[Spot]) -> list[Spot]:
         found: list[Spot] = []
@@ -163,9 +175,9 @@ def _outline(points: Array) -> Array:
         return found
 
     if len(order) == 1:
-        return np.array(order)
+        return order
     lower, upper = chain(order), chain(order[::-1])
-    return np.array([*lower[:-1], *upper[:-1]]) if len(lower) > 1 else np.array(lower)
+    return [*lower[:-1], *upper[:-1]] if len(lower) > 1 else lower
 
 
 def _turn(a: Spot, b: Spot, c: Spot) -> float:
@@ -173,20 +185,19 @@ def _turn(a: Spot, b: Spot, c: Spot) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def _clipped(ours: Array, theirs: Array, slack: float) -> Array:
+def _clipped(ours: list[Spot], theirs: list[Spot], slack: float) -> list[Spot]:
     """Return what a point, segment or convex polygon has in common with another.
 
     Sutherland and Hodgman 1974. Points nearer than `slack` are one.
     """
     if len(theirs) < 3 <= len(ours):
         ours, theirs = theirs, ours
-    kept = _spots(ours)
+    kept = ours
     if len(theirs) >= 3:
-        around = _spots(theirs)
-        for start, end in zip(around, around[1:] + around[:1], strict=True):
+        for start, end in zip(theirs, theirs[1:] + theirs[:1], strict=True):
             kept = _inside(kept, start, end, slack)
     elif len(theirs) == 2 and len(kept) == 2:
-        kept = _segments(np.array(kept), theirs, slack)
+        kept = _segments(np.array(kept), np.array(theirs), slack)
     else:
         # A corner on a corner, or on an edge, has no plane of its own.
         kept = []
@@ -195,7 +206,7 @@ def _clipped(ours: Array, theirs: Array, slack: float) -> Array:
 
 def _inside(kept: list[Spot], start: Spot, end: Spot, slack: float) -> list[Spot]:
     """Keep what lies to the left of a line; a point or a segment on it, too."""
-    long = float(np.hypot(end[0] - start[0], end[1] - start[1]))
+    long = math.dist(start, end)
     if not (long and kept):
         return kept
     # A polygon is cut at the line; fewer corners have to be well inside.
@@ -236,13 +247,14 @@ def _segments(ours: Array, theirs: Array, slack: float) -> list[Spot]:
     return _spots((ours[0] + place * along)[None]) if slack < place < long - slack else []
 
 
-def _cross(ours: Array, theirs: Array) -> bool:
+def _cross(ours: list[Spot], theirs: list[Spot]) -> bool:
     """Tell whether two segments have two directions."""
-    a, b = ours[1] - ours[0], theirs[1] - theirs[0]
-    return bool(abs(a[0] * b[1] - a[1] * b[0]) > PARALLEL * np.hypot(*a) * np.hypot(*b))
+    (a, b), (c, d) = ours, theirs
+    turned = (b[0] - a[0]) * (d[1] - c[1]) - (b[1] - a[1]) * (d[0] - c[0])
+    return abs(turned) > PARALLEL * math.dist(a, b) * math.dist(c, d)
 
 
-def _apart(points: list[Spot], slack: float) -> Array:
+def _apart(points: list[Spot], slack: float) -> list[Spot]:
     """Leave out points nearer than `slack` to a neighbour, or to the line between both."""
     found: list[Spot] = []
     for point in points:
@@ -256,16 +268,22 @@ def _apart(points: list[Spot], slack: float) -> Array:
             del found[at]
         else:
             at += 1
-    return np.array(found).reshape(-1, 2)
+    return found
 
 
-def _narrow(polygon: Array) -> float:
-    """Return the least width of a convex polygon."""
+def _is_narrow(around: list[Spot], slack: float) -> bool:
+    """Tell whether the least width of a convex polygon is no more than that."""
+    pairs = list(zip(around, around[1:] + around[:1], strict=True))
+    area = sum(_turn(around[0], *each) for each in pairs) / 2
+    # It is not below the area over half the way around.
+    if 2 * area > slack * sum(math.dist(*each) for each in pairs):
+        return False
+    polygon = np.array(around)
     edges = np.roll(polygon, -1, axis=0) - polygon
     long = np.hypot(edges[:, 0], edges[:, 1])
     sides = np.stack([-edges[:, 1], edges[:, 0]], axis=1) / long[:, None]
     heights = sides @ polygon.T
-    return float((heights.max(axis=1) - heights.min(axis=1)).min())
+    return bool((heights.max(axis=1) - heights.min(axis=1)).min() <= slack)
 
 
 def _extent(points: Array) -> tuple[int, float]:

@@ -9,13 +9,12 @@ from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.space.assembly import FaceJoint, SolidBlock, SpatialAssembly
 from blocksim.blocks.space.polyhedron import Polyhedron
-from blocksim.blocks.space.problem import SpatialProblem
 
 UP = np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 1.0]])
 """The plane in space."""
 
 
-def extruded(problem: Problem) -> SpatialProblem:
+def extruded(problem: Problem) -> Problem[SpatialAssembly]:
     """Return a plane problem as prisms in space, with its own joints, weights and loads.
 
     Parameters
@@ -26,18 +25,18 @@ def extruded(problem: Problem) -> SpatialProblem:
     Raises
     ------
     InputError
-        If the ground shakes or supports move, which is of the plane.
+        If the ground shakes, or blocks or supports move: that is of the plane.
 
     Examples
     --------
     >>> import blocksim
     >>> arch = blocksim.CircularArch(half_angle_deg=90, eta=0.2, friction=0.7, voussoirs=9)
     >>> extruded(arch.problem())
-    SpatialProblem(9 blocks, 10 joints, mu=0.7)
+    Problem(9 blocks in space, 10 joints, mu=0.7)
     """
     assembly = problem.assembly
     x, y, out = problem.gravity.tolist()
-    return SpatialProblem(
+    return Problem(
         assembly=_prisms(assembly),
         mu=problem.mu,
         # Out of the plane is towards who looks at it: against y.
@@ -48,6 +47,7 @@ def extruded(problem: Problem) -> SpatialProblem:
         title=problem.title,
         source=problem.source,
         shaking=problem.shaking,
+        velocities=problem.velocities,
         weighed=problem.weighed,
         notes=(*problem.notes, "blocks of the plane as prisms"),
     )

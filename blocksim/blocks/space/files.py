@@ -6,7 +6,7 @@ Lengths in m, forces in N, z upwards.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import Annotated, Any, cast
 
 import numpy as np
@@ -24,13 +24,9 @@ from blocksim.blocks.entries import (
     listed,
 )
 from blocksim.blocks.loads import LoadsOf, Names, acting_of, name_of, sides_of
-from blocksim.blocks.space.assembly import (
-    MOST_SOLIDS,
-    FaceJoint,
-    Solid,
-    assembly_in_space,
-)
-from blocksim.blocks.space.problem import DOWN, SpatialProblem
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.assembly import FaceJoint, Solid, SpatialAssembly
+from blocksim.blocks.space.joining import MOST_SOLIDS, assembly_in_space
 from blocksim.common.checks import WEIGHT, require
 from blocksim.common.tables import Written, as_said
 
@@ -46,22 +42,14 @@ Corners = Annotated[list[Point], listed(1, MOST_CORNERS)]
 
 @dataclass(frozen=True, kw_only=True)
 class SolidEntry(Written):
-    """Entry of `blocks` in space: `vertices`, or `polyhedra` that move as one.
+    """Entry of `blocks` in space, as `BlockEntry` in the plane.
 
     Parameters
     ----------
-    id : int or str
-        Names the block, once in a file.
     vertices : list of point
         Corners of a convex polyhedron [m], in any order.
     polyhedra : list of list of point
         Convex parts that move as one block [m], instead of `vertices`.
-    fixed : bool
-        Whether it is a support.
-    weight : float
-        [N]; by default density times volume.
-    centre : point
-        Where its weight acts [m]; by default the centroid.
     """
 
     id: NewId
@@ -74,18 +62,12 @@ class SolidEntry(Written):
 
 @dataclass(frozen=True, kw_only=True)
 class FaceEntry(Written):
-    """Entry of `joints` in space.
+    """Entry of `joints` in space, as `JointEntry` in the plane.
 
     Parameters
     ----------
-    a, b : int or str
-        The two blocks.
     points : list of point
-        Corners of the polygon that they share, ends of a segment, or a point [m].
-    normal : list of float
-        Direction from `a` into `b`.
-    friction : float
-        Of this joint, instead of that of the file; 0 allowed.
+        Corners of the polygon that both share, ends of a segment, or a point [m].
     """
 
     a: Id
@@ -97,21 +79,7 @@ class FaceEntry(Written):
 
 @dataclass(frozen=True, kw_only=True)
 class SpatialLoadEntry(Written):
-    """Entry of `dead` or `live` in space: a `body` force, or a `force` on a block.
-
-    Parameters
-    ----------
-    body : list of float
-        Force on every block, in units of its weight.
-    blocks : list of int or str
-        Those `body` acts on; by default all that move.
-    block : int or str
-        The one a `force` acts on.
-    point : point
-        Where it acts [m]; by default the block's centre.
-    force : list of float
-        [N]
-    """
+    """Entry of `dead` or `live` in space, as `LoadEntry` in the plane, but along no patch."""
 
     body: Way | None = None
     blocks: Annotated[list[Id], listed(1, MOST_SOLIDS)] | None = None
@@ -121,38 +89,39 @@ class SpatialLoadEntry(Written):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpatialFile(Said):
-    """A structure file in space as written.
+class SpatialAround(Said):
+    """What a structure file in space says besides its blocks, of the keys of `Around`.
 
     Parameters
     ----------
-    friction : float
-        Friction coefficient of every joint.
-    blocks : list of block
-        At least two, one of them fixed.
-    title, source : str
-    density : float
-        Weight of a unit of volume [N/m3]; without it only ratios of forces have a meaning.
     dead : list of load
         Loads that stay as they are; by default gravity, `{"body": [0, 0, -1]}`.
-    live : list of load
-        Loads that are multiplied by the load factor.
-    load : float
-        Factor on the live loads when it is asked whether it stands.
+    """
+
+    dead: Annotated[list[SpatialLoadEntry], listed(0, MOST_SOLIDS)] | None = None
+    live: Annotated[tuple[SpatialLoadEntry, ...], listed(0, MOST_SOLIDS)] = ()
+
+
+AROUND = tuple(field.name for field in fields(SpatialAround))
+"""Keys of a structure file in space that are not of its blocks."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpatialFile(SpatialAround):
+    """A structure file of blocks in space as written: the keys of `SpatialAround`, and these.
+
+    Parameters
+    ----------
+    blocks : list of block
+        At least two, one of them fixed.
     joints : list of joint
         By default found.
     tolerance : float
         Gaps and overlaps up to this are closed [m], but no more than a tenth of the thinner
         block; by default what rounding explains.
-    notes : list of str
-        How the file was made of another; said with each answer.
-    expect : list of expect
-        What its source says, for `validate`.
     """
 
     blocks: Annotated[list[SolidEntry], listed(2, MOST_SOLIDS)]
-    dead: Annotated[list[SpatialLoadEntry], listed(0, MOST_SOLIDS)] | None = None
-    live: Annotated[tuple[SpatialLoadEntry, ...], listed(0, MOST_SOLIDS)] = ()
     joints: Annotated[list[FaceEntry], listed(0, 20 * MOST_SOLIDS)] | None = None
     tolerance: Step | None = None
 
@@ -179,7 +148,7 @@ def is_spatial(data: object) -> bool:
     return False
 
 
-def problem_in_space(data: object) -> SpatialProblem:
+def problem_in_space(data: object) -> Problem[SpatialAssembly]:
     """Make a problem of what a structure file in space says.
 
     Parameters
@@ -200,24 +169,34 @@ def problem_in_space(data: object) -> SpatialProblem:
         density=written.unit_weight,
         tolerance=written.tolerance,
     )
-    acts = acting_of(written, LoadsOf(solids, SPACE), DOWN)
-    notes = [*written.notes, *acts.notes]
     closed = [abs(each.gap) for each in assembly.joints if each.gap]
+    notes: list[str] = []
     if closed and max(closed) > 1e-9 * assembly.size:
         notes.append(f"gaps and overlaps of up to {1000 * max(closed):.3g} mm closed")
-    return SpatialProblem(
-        assembly=assembly,
-        mu=written.friction,
-        gravity=acts.gravity,
-        dead=acts.dead,
-        live=acts.live,
-        load=float(written.load),
-        title=written.title,
-        source=written.source,
-        weighed=written.density is not None
-        or all(each.fixed or each.weight is not None for each in solids),
-        notes=tuple(notes),
-    )
+    weighed = all(each.fixed or each.weight is not None for each in solids)
+    made = problem_of_solids(written, solids, assembly)
+    return replace(made, weighed=made.weighed or weighed, notes=(*made.notes, *notes))
+
+
+def problem_of_solids(
+    written: SpatialAround, solids: Sequence[Solid], assembly: SpatialAssembly
+) -> Problem[SpatialAssembly]:
+    """Make a problem of an assembly and of what a file says besides.
+
+    Parameters
+    ----------
+    written : SpatialAround
+    solids : sequence of Solid
+        Of which the assembly was made, each with a name of its own.
+    assembly : SpatialAssembly
+
+    Raises
+    ------
+    InputError
+        In one line: a load on no block.
+    """
+    acts = acting_of(written, LoadsOf(solids, SPACE), np.array(SpatialAssembly.down))
+    return acts.on(assembly, written.friction)
 
 
 def _solids(written: SpatialFile) -> list[Solid]:

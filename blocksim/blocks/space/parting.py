@@ -1,4 +1,4 @@
-"""Poses in space to motions: how far corners go, and how far the sides of joints part."""
+"""Poses in space to motions: how far the sides of joints part."""
 
 from __future__ import annotations
 
@@ -7,25 +7,6 @@ from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.space.assembly import SpatialAssembly
-
-
-def displacement_in_space(moved: Array, assembly: SpatialAssembly) -> Array:
-    """Bound of the displacement of any corner, from those of the centres.
-
-    Parameters
-    ----------
-    moved : (..., blocks, 6) float
-        Displacements x, y, z of the centres, in units of the size, and rotation vectors.
-    assembly : SpatialAssembly
-
-    Returns
-    -------
-    (...) float
-        Largest over the blocks of the translation or a corner's way by rotation.
-    """
-    shift = np.linalg.norm(moved[..., :3], axis=-1)
-    turn = np.linalg.norm(moved[..., 3:], axis=-1) * assembly.reach / assembly.size
-    return np.maximum(shift, turn).max(axis=-1)
 
 
 def parted(assembly: SpatialAssembly, poses: Array) -> tuple[Array, Array]:
@@ -54,15 +35,14 @@ def parted(assembly: SpatialAssembly, poses: Array) -> tuple[Array, Array]:
     return gap, slip
 
 
-def overlap_in_space(assembly: SpatialAssembly, poses: Array) -> float:
-    """Deepest overlap at a point of a joint, as a share of the largest motion of one."""
+def overlap_and_slip_in_space(assembly: SpatialAssembly, poses: Array) -> tuple[float, float]:
+    """Deepest overlap at a point of a joint, and largest slip at one that stays closed.
+
+    Both are shares of the largest motion of a point.
+    """
     gap, slip = parted(assembly, poses)
     moved = max(float(np.abs(gap).max()), float(slip.max()))
-    return max(0.0, -float(gap.min())) / moved if moved > 0 else 0.0
-
-
-def slip_in_space(assembly: SpatialAssembly, poses: Array) -> float:
-    """Largest slip at a point of a joint that stays closed, likewise."""
-    gap, slip = parted(assembly, poses)
-    moved = max(float(np.abs(gap).max()), float(slip.max()))
-    return float(np.where(gap < slip, slip, 0.0).max()) / moved if moved > 0 else 0.0
+    if not moved > 0:
+        return 0.0, 0.0
+    slides = float(np.where(gap < slip, slip, 0.0).max())
+    return max(0.0, -float(gap.min())) / moved, slides / moved

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.blocks.space.polyhedron import frame
-from blocksim.blocks.space.problem import SpatialProblem
 
 Places = NDArray[np.int64]
 
@@ -24,13 +25,9 @@ class JointPoints:
     A face presses anywhere within its polygon. One contact a corner is exact: a force within
     the cone at a point of a convex polygon is a sum of parallel ones at its corners.
     Lengths are in units of the size, forces of the mean block's weight.
-
-    Parameters
-    ----------
-    problem : SpatialProblem
     """
 
-    problem: SpatialProblem
+    problem: Problem[SpatialAssembly]
 
     @cached_property
     def joint(self) -> Places:
@@ -61,10 +58,9 @@ class JointPoints:
         (points,) float, in mean weights: the pressure by which it is told whether it presses.
         """
         assembly = self.problem.assembly
-        weights = assembly.weights / self.unit
-        sides = [(each.before, each.after) for each in assembly.joints]
-        least = [min(weights[side] for side in pair if side != SUPPORT) for pair in sides]
-        return np.array(least)[self.joint] / np.bincount(self.joint)[self.joint]
+        weights = np.append(assembly.weights / self.unit, np.inf)
+        least = weights[assembly.sides].min(axis=0)
+        return least[self.joint] / np.bincount(self.joint)[self.joint]
 
     @cached_property
     def matrix(self) -> Any:
@@ -78,8 +74,8 @@ class JointPoints:
         columns: list[Any] = []
         values: list[Array] = []
         at = 3 * np.arange(len(points))[:, None, None] + np.arange(3)[:, None]
-        for side, sign in (("before", -1.0), ("after", 1.0)):
-            block = np.array([getattr(each, side) for each in assembly.joints])[self.joint]
+        for side, sign in zip(assembly.sides, (-1.0, 1.0), strict=True):
+            block = side[self.joint]
             on = block != SUPPORT
             arms = (points[on] - assembly.centres[block[on]]) / assembly.size
             wrench: Array = sign * np.concatenate(
@@ -96,7 +92,7 @@ class JointPoints:
     @property
     def live(self) -> Array:
         """Live loads at a factor of 1, (6 blocks,)."""
-        return self.problem.scaled(self.problem.live_pull).ravel()
+        return self.problem.live_forces.ravel()
 
     @cached_property
     def rows(self) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,11 +13,14 @@ from numpy.typing import ArrayLike
 from blocksim.blocks.assembly import Array, frozen
 from blocksim.common.errors import InputError
 
+Vector = tuple[float, float, float]
 FEWEST = 4
 FLAT = 1e-9
 """Share of its length below which a polyhedron has no thickness."""
 COPLANAR = 1e-7
 """Share of its thickness by which corners of one face may lie off its plane."""
+SAME = 1 - 1e-14
+"""Cosine of the angle below which two planes are one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,13 +77,14 @@ class Polyhedron:
         allowed = f"{FEWEST} corners or more that do not lie in a plane"
         if len(points) < FEWEST:
             raise InputError("vertices", f"{len(points)} corners", allowed)
+        # Far from the origin digits would be lost.
+        about = points - points.mean(axis=0)
         long = float(np.ptp(points, axis=0).max())
-        spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+        spread = np.linalg.svd(about, compute_uv=False)
         if not spread[2] > FLAT * max(long, 1e-300):
             raise InputError("vertices", "a flat hull", allowed)
         try:
-            # Far from the origin digits would be lost.
-            hull = ConvexHull(points - points.mean(axis=0))
+            hull = ConvexHull(about)
         except QhullError:
             raise InputError("vertices", "a flat hull", allowed) from None
         place = np.empty(len(points), np.int64)
@@ -87,14 +92,18 @@ class Polyhedron:
         sides = place[hull.simplices]
         own = frozen(points[hull.vertices], (-1, 3))
         # Triangles of the hull, turned counter-clockwise seen from outside.
-        inwards = (_crosses(own[sides]) * hull.equations[:, :3]).sum(axis=1) < 0
+        cross = _crosses(own[sides])
+        inwards = (cross * hull.equations[:, :3]).sum(axis=1) < 0
         sides[inwards] = sides[inwards][:, ::-1]
-        vars(self).update(corners=own, slack=slack, _sides=sides)
+        cross[inwards] *= -1.0
+        areas = np.sqrt((cross**2).sum(axis=1))
+        units = cross / np.where(areas > 0, areas, 1.0)[:, None]
+        vars(self).update(corners=own, slack=slack, _sides=sides, _areas=areas, _units=units)
 
     @cached_property
     def triangles(self) -> Array:
         """Its surface, (k, 3, 3), each counter-clockwise seen from outside."""
-        return self.corners[self.__dict__["_sides"]]
+        return self.corners[vars(self)["_sides"]]
 
     @cached_property
     def box(self) -> Array:
@@ -104,28 +113,26 @@ class Polyhedron:
     @cached_property
     def faces(self) -> tuple[Face, ...]:
         """Its faces: triangles in one plane are one."""
-        corners, sides = self.corners, self.__dict__["_sides"]
-        middle = corners.mean(axis=0)
-        cross = _crosses(self.triangles)
-        areas = np.linalg.norm(cross, axis=1)
+        corners, sides = self.corners, vars(self)["_sides"]
+        areas, units = vars(self)["_areas"], vars(self)["_units"]
         slack = max(self.slack, COPLANAR * self.thickness)
+        middle = corners.mean(axis=0)
+        heights = units @ (corners - middle).T
+        # Which corners lie in the plane of each triangle.
+        on = np.abs(heights - heights[range(len(sides)), sides[:, 0]][:, None]) <= slack
         found: list[Face] = []
         free = areas > 0
         for index in np.argsort(-areas).tolist():
             if not free[index]:
                 continue
-            normal = cross[index] / areas[index]
-            on = np.abs((corners - corners[sides[index, 0]]) @ normal) <= slack
-            face = _face_of(corners[on], normal)
-            normal, offset = face.normal, face.offset
+            face = _face_of(corners[on[index]], units[index])
             # A sliver of a face found before is no face.
-            off = np.abs(corners @ normal - offset)
-            free &= off[sides].max(axis=1) > 2 * slack
+            off = np.abs(corners @ face.normal - face.offset) > 2 * slack
+            free &= off[sides].any(axis=1)
             free[index] = False
-            if not any(normal @ other.normal > 1 - 1e-14 for other in found):
+            if not any(face.normal @ other.normal > SAME for other in found):
                 found.append(face)
-        outwards = [face for face in found if face.normal @ middle < face.offset]
-        return tuple(outwards)
+        return tuple(face for face in found if face.normal @ middle < face.offset)
 
     @property
     def around(self) -> list[list[int]]:
@@ -150,10 +157,8 @@ class Polyhedron:
     @cached_property
     def thickness(self) -> float:
         """The least distance between two planes around it, one of which is a face's [m]."""
-        cross = _crosses(self.triangles)
-        areas = np.linalg.norm(cross, axis=1)
-        large = areas > 1e-6 * areas.max()
-        heights = (cross[large] / areas[large, None]) @ self.corners.T
+        areas, units = vars(self)["_areas"], vars(self)["_units"]
+        heights = units[areas > 1e-6 * areas.max()] @ self.corners.T
         return float((heights.max(axis=1) - heights.min(axis=1)).min())
 
     @cached_property
@@ -213,7 +218,7 @@ def _face_of(plane: Array, near: Array) -> Face:
     """
     (x, y, z), count = plane.sum(axis=0).tolist(), len(plane)
     x, y, z = x / count, y / count, z / count
-    (a, b, c), (d, e, f) = frame(near).tolist()
+    (a, b, c), (d, e, f) = across(near.tolist())
     arms = [(u - x, v - y, w - z) for u, v, w in plane.tolist()]
     angles = [math.atan2(d * u + e * v + f * w, a * u + b * v + c * w) for u, v, w in arms]
     order = sorted(range(count), key=angles.__getitem__)
@@ -232,14 +237,22 @@ def frame(normal: Array) -> Array:
     Examples
     --------
     >>> import numpy as np
-    >>> frame(np.array([0.0, 0.0, 1.0]))
+    >>> frame(np.array([0.0, 0.0, 1.0])) + 0.0
     array([[1., 0., 0.],
            [0., 1., 0.]])
     """
-    way = normal.tolist()
-    least = min(range(3), key=lambda axis: abs(way[axis]))
-    first = [(axis == least) - way[least] * way[axis] for axis in range(3)]
-    long = math.hypot(*first)
-    x, y, z = (each / long for each in first)
-    a, b, c = way
-    return np.array([[x, y, z], [b * z - c * y, c * x - a * z, a * y - b * x]])
+    return np.array(across(normal.tolist()))
+
+
+def across(normal: Sequence[float]) -> tuple[Vector, Vector]:
+    """Return the same of plain numbers."""
+    a, b, c = normal
+    # Away from the axis that is nearest to being across already.
+    sizes = [abs(a), abs(b), abs(c)]
+    least = sizes.index(min(sizes))
+    first = [-normal[least] * each for each in normal]
+    first[least] += 1.0
+    x, y, z = first
+    long = math.sqrt(x * x + y * y + z * z)
+    x, y, z = x / long, y / long, z / long
+    return (x, y, z), (b * z - c * y, c * x - a * z, a * y - b * x)

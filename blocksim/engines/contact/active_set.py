@@ -11,6 +11,7 @@ It begins where no more than a few have to change, and gives up where more and m
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,10 +22,9 @@ from blocksim.engines.contact.coulomb import (
     SLIDES_UP,
     STICKS,
     Contacts,
-    Doing,
+    ContactStatus,
 )
-from blocksim.engines.contact.springs import stiffness_at
-from blocksim.engines.contact.step import Answer, Linear, Step
+from blocksim.engines.contact.step import Answer, Linear, Step, stiffness_at
 
 MOST_SYSTEMS = 24
 ROUND_OFF = 1e-14
@@ -45,7 +45,7 @@ RELATIVE = 1e-8
 """Residual over the accelerations at which contacts that still change are round-off."""
 
 
-def settle(step: Step, guess: Answer, precision: float) -> list[Answer]:
+def by_active_set(step: Step, guess: Answer, precision: float) -> list[Answer]:
     """Look for the solution that is near a guess.
 
     Parameters
@@ -61,16 +61,14 @@ def settle(step: Step, guess: Answer, precision: float) -> list[Answer]:
         Those on the way. The last is the solution if it is settled; `residual` of others may
         not be known.
     """
-    x, contacts = guess.x, guess.contacts
+    x, contacts, circle = guess.x, guess.contacts, _Circle()
     # Forces stop what is closed: accelerations will be as large.
     stopped = np.abs(step.rates[:, :2][contacts != OPEN]).max(initial=0.0)
     stiffness = stiffness_at(step.friction, np.append(x, stopped), precision)
     linear = Linear(step, contacts, stiffness)
     held = np.abs(guess.forces[:, 2:])
-    preload = linear.doing.forces(guess.forces, held)
-    tried: list[Answer] = []
-    last, allowed = math.inf, preload.size
-    seen, careful = set[bytes](), False
+    preload = linear.status.forces(guess.forces, held)
+    tried, last, allowed = list[Answer](), math.inf, preload.size
     rates = step.velocities(x)
     for systems in range(1, MOST_SYSTEMS + 1):
         way, more = linear.way(x, preload - stiffness * rates, held)
@@ -79,53 +77,29 @@ def settle(step: Step, guess: Answer, precision: float) -> list[Answer]:
         if not math.isfinite(largest):
             break
         rates = step.velocities(x)
-        forces = linear.doing.forces(preload - stiffness * rates, held)
+        forces = linear.status.forces(preload - stiffness * rates, held)
         change = forces - preload
         most = float(np.abs(change).max(initial=0.0))
         unsure, yields = UNSURE * most, most / stiffness
-        mended = _mended(step, linear.doing, forces, rates, unsure, unsure / stiffness)
+        mended = _mended(step, linear.status, forces, rates, unsure, unsure / stiffness)
         changes = 0 if mended is contacts else int(np.count_nonzero(mended != contacts))
-        nothing = max(precision * max(1.0, largest), NO_YIELD * largest)
         ratio, last = yields / last, math.inf if changes else yields
-        residual, is_settled = math.inf, False
-        if changes:
-            # Where nothing pulls it may be that nothing is wrong but round-off.
-            if -float(forces[:, :2].min()) <= RELATIVE * largest * max(1.0, largest):
-                residual = step.residual(x, forces, rates)
-                is_settled = residual <= RELATIVE * largest
-        elif yields <= nothing or (ratio > DRIFT and yields <= _unfit(step, largest)):
-            residual, is_settled = step.residual(x, forces, rates), True
-        tried.append(
-            Answer(
-                x=x,
-                forces=forces,
-                contacts=contacts,
-                residual=residual,
-                systems=guess.systems + systems,
-                is_settled=is_settled,
-            )
-        )
-        if is_settled or changes > allowed:
+        answer = Answer(x=x, forces=forces, contacts=contacts, systems=guess.systems + systems)
+        if changes or _is_nothing(yields, step, largest, precision, drifts=ratio > DRIFT):
+            answer = _settled(step, answer, rates, surely=not changes)
+        tried.append(answer)
+        if answer.is_settled or changes > allowed:
             break
         allowed = min(allowed, MORE * changes + FEW)
         preload = forces
         if changes:
-            seen.add(contacts.tobytes())
-            if not careful and mended.tobytes() in seen:
-                # In a circle: one at a time, always the first, leads out (K. G. Murty,
-                # Opsearch 11, 1974, 4-10, for matrices that are as friction seldom is not).
-                careful, seen = True, {contacts.tobytes()}
-            if careful:
-                mended = _first(contacts, mended)
-                if mended.tobytes() in seen:
-                    # It does not.
-                    break
+            mended = circle.left(contacts, mended)
+            if mended is None:
+                break
             contacts = mended
             linear = Linear(step, contacts, stiffness)
         elif ratio > SLOW:
-            # It goes on to change, less each time, or until a contact gives way.
-            ahead = ratio / (1 - ratio) if ratio < DRIFT else FARTHEST
-            ahead = min(ahead, _reach(step, forces, change))
+            ahead = _reach(step, forces, change, ratio)
             if ahead == FARTHEST:
                 # Contacts contradict each other, and none ever gives way.
                 break
@@ -133,22 +107,53 @@ def settle(step: Step, guess: Answer, precision: float) -> list[Answer]:
     return tried
 
 
-def _unfit(step: Step, largest: float) -> float:
-    """Return the yield without end of faces that do not quite fit."""
-    return RIGID * max(largest, float(np.abs(step.rates).max(initial=0.0)))
+class _Circle:
+    """What contacts have done, so that they do not go on in a circle.
+
+    Changed one at a time, always the first, they leave it (K. G. Murty, Opsearch 11, 1974,
+    4-10, for matrices that are as friction seldom is not).
+    """
+
+    def __init__(self) -> None:
+        self._seen, self._careful = set[bytes](), False
+
+    def left(self, contacts: Contacts, mended: Contacts) -> Contacts | None:
+        """Return what contacts are to do next; None where they do not leave the circle."""
+        self._seen.add(contacts.tobytes())
+        if not self._careful and mended.tobytes() in self._seen:
+            self._careful, self._seen = True, {contacts.tobytes()}
+        if not self._careful:
+            return mended
+        first = contacts.copy()
+        place = int(np.flatnonzero(mended != contacts)[0])
+        first.flat[place] = mended.flat[place]
+        return None if first.tobytes() in self._seen else first
 
 
-def _first(contacts: Contacts, mended: Contacts) -> Contacts:
-    """Change only the first of the contacts that are to change."""
-    found = contacts.copy()
-    place = int(np.flatnonzero(mended != contacts)[0])
-    found.flat[place] = mended.flat[place]
-    return found
+def _settled(step: Step, answer: Answer, rates: Array, *, surely: bool) -> Answer:
+    """Return an answer as the solution: surely, or if nothing is wrong but round-off."""
+    largest = float(np.abs(answer.x).max())
+    pulls = -float(answer.forces[:, :2].min()) > RELATIVE * largest * max(1.0, largest)
+    if pulls and not surely:
+        return answer
+    residual = step.residual(answer.x, answer.forces, rates)
+    settled = surely or residual <= RELATIVE * largest
+    return replace(answer, residual=residual, is_settled=settled)
 
 
-def _reach(step: Step, forces: Array, change: Array) -> float:
+def _is_nothing(
+    yields: float, step: Step, largest: float, precision: float, *, drifts: bool
+) -> bool:
+    """Tell whether yields are round-off, or without end, of faces that do not quite fit."""
+    if yields <= max(precision * max(1.0, largest), NO_YIELD * largest):
+        return True
+    return drifts and yields <= RIGID * max(largest, float(np.abs(step.rates).max(initial=0.0)))
+
+
+def _reach(step: Step, forces: Array, change: Array, ratio: float) -> float:
     """Return how often a change can be repeated until a contact opens or slides.
 
+    It goes on, less each time by a ratio, or until a contact gives way.
     Two contacts of a joint that stick although the blocks turn work against each other,
     at equal accelerations, more from round to round, until one of them slides.
     """
@@ -157,24 +162,25 @@ def _reach(step: Step, forces: Array, change: Array) -> float:
     room = np.stack([pressure] + [a * pressure - s * b * forces[:, 2:] for s in (1, -1)])
     loss = -np.stack([growth] + [a * growth - s * b * change[:, 2:] for s in (1, -1)])
     ahead = (loss > 0) & (room > loss)
-    return float((room[ahead] / loss[ahead]).min(initial=FARTHEST))
+    most = ratio / (1 - ratio) if ratio < DRIFT else FARTHEST
+    return min(most, float((room[ahead] / loss[ahead]).min(initial=FARTHEST)))
 
 
 def _mended(
-    step: Step, doing: Doing, forces: Array, rates: Array, unsure: float, yields: float
+    step: Step, status: ContactStatus, forces: Array, rates: Array, unsure: float, yields: float
 ) -> Contacts:
     """Return what contacts do in place of what they cannot."""
     nothing = ROUND_OFF * max(1.0, float(np.abs(forces).max(initial=0.0)))
     no_force, no_rate = nothing + unsure, nothing + yields
-    beyond = doing.sticks & (step.friction.excess(forces) > no_force)
-    wrong_way = doing.is_open & (rates[:, :2] < -no_rate)
-    if doing.some_slide:
-        wrong_way |= doing.side * rates[:, 2:] > no_rate
+    beyond = status.sticks & (step.friction.excess(forces) > no_force)
+    wrong_way = status.is_open & (rates[:, :2] < -no_rate)
+    if status.some_slide:
+        wrong_way |= status.side * rates[:, 2:] > no_rate
     pulls = forces[:, :2] < -no_force
     if not (beyond | wrong_way | pulls).any():
-        return doing.contacts
-    found = doing.contacts.copy()
+        return status.contacts
+    found = status.contacts.copy()
     found[beyond] = np.where(forces[:, 2:][beyond] > 0, SLIDES_UP, SLIDES_DOWN)
     found[wrong_way] = STICKS
-    found[pulls & ~doing.is_open] = OPEN
+    found[pulls & ~status.is_open] = OPEN
     return found

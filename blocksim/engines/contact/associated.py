@@ -14,8 +14,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.cones import Cones
-from blocksim.engines.contact.springs import stiffness_at
-from blocksim.engines.contact.step import Step
+from blocksim.engines.contact.step import Step, stiffness_at
 
 MOST_ROUNDS, MOST_NEWTON = 20, 100
 BALANCED, ROUND_OFF = 1e-11, 1e-14
@@ -24,7 +23,9 @@ STALLED = 30.0
 """Multiple of that below which an imbalance that no longer halves is round-off."""
 
 
-def minimised(step: Step, cones: Cones, x: Array, pressed: Array) -> tuple[Array, Array, int]:
+def augmented_lagrangian(
+    step: Step, cones: Cones, x: Array, pressed: Array
+) -> tuple[Array, Array, int]:
     """Solve a step, beginning with accelerations x and forces along the edges.
 
     Parameters and results have the shapes of `central_path`.

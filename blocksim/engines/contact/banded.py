@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import suppress
-from functools import cached_property
+from contextlib import AbstractContextManager, nullcontext, suppress
+from functools import cache, cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,8 +31,8 @@ class Bands:
     A system that cannot be solved gives nan, which no residual of a step survives. LAPACK is
     called without scipy's checks, which take as long as a system of 100 unknowns.
 
-    Rows have shape (joints, k, 6): each is a velocity of a joint, from the six of its two
-    blocks.
+    Rows have shape (joints, k, 6), in space (joints, k, 12): each is a velocity of a joint,
+    from those of its two blocks.
 
     Parameters
     ----------
@@ -40,6 +41,8 @@ class Bands:
     blocks : int
     points : (blocks, 2) float, optional
         Where the blocks are: numbered along an axis, those of a wall that touch are near.
+    each : int
+        Unknowns of a block.
     """
 
     def __init__(
@@ -48,8 +51,9 @@ class Bands:
         after: NDArray[np.int64],
         blocks: int,
         points: Array | None = None,
+        each: int = 3,
     ) -> None:
-        self.size = 3 * blocks
+        self._each, self.size = each, each * blocks
         self.place = self._numbered = self._places_of(before, after)
         self._flat = self.place.ravel()
         self._inside = np.minimum(self.place, self.size - 1)[:, :, None]
@@ -59,9 +63,10 @@ class Bands:
         if order is not None:
             rank = np.append(np.argsort(order), -1)
             before, after = rank[before], rank[after]
-            self._order = (3 * order[:, None] + np.arange(3)).ravel()
+            self._order = (each * order[:, None] + np.arange(each)).ravel()
             self._numbered = self._places_of(before, after)
-        self._width = 3 * int(np.abs(before - after)[inner].max(initial=0)) + 2
+        apart = int(np.abs(before - after)[inner].max(initial=0))
+        self._width = each * (apart + 1) - 1
         self.rows = 3 * self._width + 1
         # Places in LAPACK's band storage, column after column, and one past its end.
         row, column = self._numbered[:, :, None], self._numbered[:, None, :]
@@ -71,30 +76,38 @@ class Bands:
 
     @cached_property
     def whole(self) -> NDArray[np.int64]:
-        """The same of a general matrix, shape (joints, 36).
+        """The same of a general matrix, shape (joints, 36), in space (joints, 144).
 
         Its factors need as many rows again above the band.
         """
         row, column = self._numbered[:, :, None], self._numbered[:, None, :]
         at = column * (self.rows - 1) + 2 * self._width + row
         inside = np.maximum(row, column) < self.size
-        return np.where(inside, at, self.rows * self.size).reshape(len(at), 36)
+        return np.where(inside, at, self.rows * self.size).reshape(len(at), -1)
 
     def _places_of(
         self, before: NDArray[np.int64], after: NDArray[np.int64]
     ) -> NDArray[np.int64]:
         """Unknowns of each joint; those of the ground are one past the end, to be dropped."""
         pair = np.stack([before, after], axis=1)[:, :, None]
-        places = np.where(pair < 0, self.size, 3 * pair + np.arange(3))
-        return places.reshape(len(pair), 6)
+        places = np.where(pair < 0, self.size, self._each * pair + np.arange(self._each))
+        return places.reshape(len(pair), 2 * self._each)
 
     @property
     def is_wide(self) -> bool:
         """Whether LAPACK factors by whole blocks of columns, which BLAS may share out."""
         return self._width >= BLOCKED
 
+    def one_thread(self) -> AbstractContextManager[Any]:
+        """Keep BLAS to one thread, where systems are wide enough for it to take more.
+
+        With two that of 500 blocks takes as long where nothing else runs, and a hundred times
+        as long where something does, as threads wait for each other by turning round.
+        """
+        return _pools().limit(limits=1, user_api="blas") if self.is_wide else nullcontext()
+
     def of_joints(self, values: Array) -> Array:
-        """Return for each joint the six values of its blocks, 0 for the ground's."""
+        """Return for each joint the values of its blocks, 0 for the ground's."""
         padded = np.zeros(self.size + 1)
         padded[:-1] = values
         return padded[self.place]
@@ -174,6 +187,14 @@ class Bands:
     def _products(rows: Array, weight: ArrayLike, seen: Array) -> Array:
         weighted = rows.transpose(0, 2, 1) * np.asarray(weight)[:, None, :]
         return np.matmul(weighted, seen).ravel()
+
+
+@cache
+def _pools() -> Any:
+    """Find the libraries loaded, once: it takes as long as a step."""
+    from threadpoolctl import ThreadpoolController  # pyright: ignore[reportMissingTypeStubs]
+
+    return ThreadpoolController()
 
 
 def _order(

@@ -170,10 +170,10 @@ class Friction:
         held : (joints, 2) float
             Size of their friction; looked at where they slide.
         """
-        return Doing(self, contacts).forces(glued, held)
+        return ContactStatus(self, contacts).forces(glued, held)
 
 
-class Doing:
+class ContactStatus:
     """Contacts that do as said: what makes forces of those of springs.
 
     Parameters
@@ -260,7 +260,7 @@ def leaning(rows: Array, slope: Array) -> Array:
     rows : (..., 4, 6) float
         Normal velocities of the two contacts, then the tangential ones.
     slope : (..., 2) float
-        As of `Doing`.
+        As of `ContactStatus`.
     """
     if not slope.any():
         return rows
@@ -269,16 +269,26 @@ def leaning(rows: Array, slope: Array) -> Array:
     return acting
 
 
-def edges(mu: float, steep: bool) -> tuple[Array, Array]:
-    """Two functions of q and s per piece, positive inside it: their factors, (pieces, 2).
+def edges(mu: Array, steep: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """Two functions of q and s per piece, positive inside it: their factors.
 
     Where a contact with steep friction slides, the size of its friction stands for q.
+
+    Parameters
+    ----------
+    mu : (joints,) float
+    steep : (joints,) bool
+
+    Returns
+    -------
+    of_normal, of_tangential : (joints, pieces, 2) float
     """
-    flat = 1 / mu if steep else 1.0
-    of_stick, of_slide = (1.0, 1.0) if steep else (mu, mu)
-    of_normal = [(-1.0, 0.0), (of_stick, of_stick), (1.0, -of_slide), (1.0, -of_slide)]
-    of_tangential = [(0.0, 0.0), (-flat, flat), (0.0, 1.0), (0.0, -1.0)]
-    return np.array(of_normal), np.array(of_tangential)
+    flat = np.where(steep, 1 / np.maximum(mu, STEEP), 1.0)
+    most = np.where(steep, 1.0, mu)
+    nothing, one = np.zeros_like(mu), np.ones_like(mu)
+    of_normal = [[-one, nothing], [most, most], [one, -most], [one, -most]]
+    of_tangential = [[nothing, nothing], [-flat, flat], [nothing, one], [nothing, -one]]
+    return np.moveaxis(np.array(of_normal), 2, 0), np.moveaxis(np.array(of_tangential), 2, 0)
 
 
 def beyond(old: int, edge: int, along: float) -> tuple[int, int]:

@@ -47,10 +47,13 @@ class Touch:
     rows : (joints, 4, 6) float
         Velocities of `after` relative to `before` from those of both blocks, along the
         normals of the two contacts, then along their tangents.
+    faces : (3, pairs) int or None
+        With which faces polygons touch that have met, as `Polygons.touch` takes them.
     """
 
     gap: Array
     rows: Array
+    faces: NDArray[np.int64] | None = None
 
 
 class Geometry:

@@ -23,6 +23,7 @@ from collections.abc import Callable
 import numpy as np
 
 from blocksim.blocks.assembly import Array
+from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.step import Step
 
@@ -69,27 +70,16 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
     apart = bands.along(edges, x) + offset + lift
     least, pressed = STEEP_START if step.friction.some_steep else START
     room: Array = np.maximum(np.abs(apart), least)
-    short: Array = apart - room
-    forces: Array = np.full_like(apart, pressed)
+    short, forces = apart - room, np.full_like(apart, pressed)
     count = 0
     for count in range(MOST_STEPS):  # noqa: B007
         product = float(np.vdot(room, forces)) / room.size
         if product < CLOSE:
             break
-        weight: Array = forces / room
-        solve = bands.factored(edges, weight, turned)
+        solve = bands.factored(edges, forces / room, turned)
         if solve is None:
             break
-        seen, left, shortage = edges if turned is None else turned, free - x, weight * short
-
-        def toward(
-            target: Array | float, solve: Callable[[Array], Array] = solve
-        ) -> tuple[Array, Array, Array]:
-            """Change x, room and forces to products of so much, over the room."""
-            way = solve(left + bands.pull(edges, target - shortage))  # noqa: B023
-            wider = bands.along(seen, way) + short  # noqa: B023
-            return way, wider, target - forces - weight * wider  # noqa: B023
-
+        toward = _toward(solve, bands, edges, turned, free - x, (room, short, forces))
         _, wider, more = toward(0.0)
         ahead = _length(room, wider, forces, more)
         after = float(np.vdot(room + ahead * wider, forces + ahead * more)) / room.size
@@ -108,6 +98,27 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
         # Not as it follows from the last one: round-off would add up where friction is steep.
         short = bands.along(edges, x) + offset + lift - room
     return x, forces, count
+
+
+def _toward(
+    solve: Callable[[Array], Array],
+    bands: Bands,
+    edges: Array,
+    turned: Array | None,
+    left: Array,
+    at: tuple[Array, Array, Array],
+) -> Callable[[Array | float], tuple[Array, Array, Array]]:
+    """Return what changes x, room and forces to products of so much, over the room."""
+    room, short, forces = at
+    weight: Array = forces / room
+    seen, shortage = edges if turned is None else turned, weight * short
+
+    def found(target: Array | float) -> tuple[Array, Array, Array]:
+        way = solve(left + bands.pull(edges, target - shortage))
+        wider = bands.along(seen, way) + short
+        return way, wider, target - forces - weight * wider
+
+    return found
 
 
 def _lift(step: Step, x: Array, cones: Cones, smooth: float) -> tuple[Array, Array]:

@@ -59,19 +59,36 @@ class Polygons:
             within += [low[first] <= high[second], low[second] <= high[first]]
         return np.logical_and.reduce(within)
 
-    def touch(self, poses: Array, before: NDArray[np.int64], after: NDArray[np.int64]) -> Touch:
-        """Find two contacts for each pair, as `Geometry` does for each joint."""
+    def touch(
+        self,
+        poses: Array,
+        before: NDArray[np.int64],
+        after: NDArray[np.int64],
+        by: NDArray[np.int64] | None = None,
+    ) -> Touch:
+        """Find two contacts for each pair, as `Geometry` does for each joint.
+
+        Parameters
+        ----------
+        poses : (polygons that move, 3) float
+        before, after : (pairs,) int
+        by : (3, pairs) int, optional
+            Faces to touch with: whether that of `after` gives the normal, which one does, and
+            which one of the other polygon looks at it. By default those that do so there.
+        """
         corners, faces = self._placed(poses)
-        gaps, best = self._apart(poses, before, after)
-        swap = gaps[1] > gaps[0] + PREFER
+        if by is None:
+            gaps, best = self._apart(poses, before, after)
+            swap = gaps[1] > gaps[0] + PREFER
+            face = best[swap.astype(np.int64), np.arange(len(swap))]
+        else:
+            swap, face = by[0].astype(np.bool_), by[1]
         owner, other = np.where(swap, after, before), np.where(swap, before, after)
-        one: NDArray[np.int64]
-        two: NDArray[np.int64]
-        one, two = best
-        face = np.where(swap, two, one)
         start, along = corners[owner, face][:, None], faces[owner, face][:, None]
         length = self._lengths[owner, face][:, None]
-        facing = (faces[other] * along.conj()).real.argmin(axis=1)
+        facing: NDArray[np.int64] = (
+            (faces[other] * along.conj()).real.argmin(axis=1) if by is None else by[2]
+        )
         following = (facing + 1) % corners.shape[1]
         ends = np.stack([corners[other, facing], corners[other, following]], axis=1)
         # Along the face, and into its block; the facing edge, cut to the length of the face.
@@ -96,7 +113,7 @@ class Polygons:
             # What stays has rows like any other; the ground's entries are dropped later.
             np.array([[-1.0, 1.0]]),
         )
-        return Touch(gap=-points.imag, rows=rows)
+        return Touch(gap=-points.imag, rows=rows, faces=np.stack([swap, face, facing]))
 
     def apart(self, poses: Array, before: NDArray[np.int64], after: NDArray[np.int64]) -> Array:
         """How far the polygons of each pair are apart, below 0 where they overlap."""

@@ -34,10 +34,6 @@ FAR = 1e3
 class Neighbours:
     """The blocks of an assembly, what they stand on, and who is near whom.
 
-    Parameters
-    ----------
-    assembly : Assembly
-
     Attributes
     ----------
     before, after : (pairs,) int
@@ -104,6 +100,7 @@ class Neighbours:
         return Touch(
             gap=np.concatenate([touch.gap[self._holds], met.gap[close]]),
             rows=np.concatenate([touch.rows[self._holds], met.rows[close]]),
+            faces=None if met.faces is None else met.faces[:, close],
         )
 
     def again(self, poses: Array) -> Touch:
@@ -116,7 +113,26 @@ class Neighbours:
         return Touch(
             gap=np.concatenate([touch.gap[held], met.gap]),
             rows=np.concatenate([touch.rows[held], met.rows]),
+            faces=met.faces,
         )
+
+    def followed(self, touch: Touch, poses: Array, like: Touch) -> Touch:
+        """Return contacts found at poses as those of the faces that touched before.
+
+        Which corner is which of the two contacts changes where another face looks at the
+        first: of a block on the ground when it has turned by half a right angle.
+        """
+        if touch.faces is None or like.faces is None:
+            return touch
+        other = np.flatnonzero((touch.faces != like.faces).any(axis=0))
+        if not len(other):
+            return touch
+        before, after = (each[other] for each in self._meet)
+        met = self._polygons.touch(poses[self.owner], before, after, like.faces[:, other])
+        gap, rows = touch.gap.copy(), touch.rows.copy()
+        place = len(gap) - len(self._meet[0]) + other
+        gap[place], rows[place] = met.gap, met.rows
+        return Touch(gap=gap, rows=rows, faces=like.faces)
 
     def _strangers(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Find pairs of polygons of two blocks that no joint holds, the smaller first."""

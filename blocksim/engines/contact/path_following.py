@@ -14,7 +14,7 @@ Methods Eng. 39, 1996, 2673-2691, and M. Anitescu and F. A. Potra, Nonlinear Dyn
 231-247), on the piecewise linear law itself (J. Katzenelson, Bell Syst. Tech. J. 44, 1965,
 1605-1620).
 
-A path may begin at a guess as well: `put_right`.
+A path may begin at a guess as well: `path_from_guess`.
 
 Along a path friction is at most 1 / `FLATTEST`; what ends it takes friction as it is.
 """
@@ -41,8 +41,7 @@ from blocksim.engines.contact.coulomb import (
     edges,
     leaning,
 )
-from blocksim.engines.contact.slides import Slides
-from blocksim.engines.contact.step import Answer, Linear, Step
+from blocksim.engines.contact.step import Answer, Linear, Slides, Step
 
 STIFF = 1e8
 """Stiffness of the springs: what they yield then is mended in a few systems."""
@@ -55,7 +54,7 @@ NEAREST_PIECES, NEAR_PIECES, LAST_PIECES = 2, 3, 1
 others all apart is then as near; of those from the last step that arrive 95 % take 0.9."""
 
 
-def come_together(step: Step, preload: Array | None = None) -> Answer | None:
+def path_from_apart(step: Step, preload: Array | None = None) -> Answer | None:
     """Balance stiff springs, from all contacts apart.
 
     Their forces without motion may be given: near the limit it is they that tell what contacts
@@ -78,7 +77,7 @@ def come_together(step: Step, preload: Array | None = None) -> Answer | None:
     return _end(step, start, preload, most)
 
 
-def put_right(step: Step, guess: Answer, most: int = NEAR_PIECES) -> Answer | None:
+def path_from_guess(step: Step, guess: Answer, most: int = NEAR_PIECES) -> Answer | None:
     """Balance stiff springs, from what a guess says.
 
     Velocities that its contacts may not have and forces that do not balance are taken for
@@ -148,7 +147,7 @@ def _end(step: Step, start: _Start, preload: Array, most: int) -> Answer | None:
     way, more = linear.way(x, preload - STIFF * step.velocities(x), held)
     if np.isfinite(way).all():
         x, held = x + way, held + more
-    forces = linear.doing.forces(preload - STIFF * step.velocities(x), held)
+    forces = linear.status.forces(preload - STIFF * step.velocities(x), held)
     return Answer(x=x, forces=forces, contacts=start.contacts, systems=pieces)
 
 
@@ -162,79 +161,106 @@ def _follow(step: Step, start: _Start, most: int) -> tuple[Array, Array, int] | 
         Friction of contacts that slide with steep friction.
     pieces : int
     """
-    bands, rows, friction = step.bands, step.rows, step.friction
-    x, forces, contacts, left = start.x, start.forces, start.contacts, start.left
-    push, sign = start.push, 1.0
-    own = friction.own(contacts)
-    acting, weight = _acting(rows, contacts, friction.lean, own)
-    right = start.pull + bands.pull(acting, push * (weight > 0))
-    system = System(bands, bands.band(acting, weight, rows), right)
-
-    def onward() -> tuple[Array, Array]:
-        """Return how x and the forces change."""
-        if not own.any():
-            way = system.solve()
-            return way, push - STIFF * bands.along(rows, way)
-        slides = Slides(bands, rows, contacts, own, flat)
-        way, held = slides.solve(system.solve, push[:, :2] / STIFF, STIFF)
-        turn = push - STIFF * bands.along(rows, way)
-        turn[:, :2] = np.where(own, held, turn[:, :2])
-        return way, turn
-
-    mu, flat = np.minimum(friction.mu, 1 / FLATTEST), friction.flattest
-    factors = [
-        edges(float(m), bool(s)) for m, s in zip(mu[:, 0], friction.steep[:, 0], strict=True)
-    ]
-    of_normal, of_tangential = (np.array(each) for each in zip(*factors, strict=True))
-    joints = np.arange(len(mu))[:, None]
-    normal = np.moveaxis(of_normal[joints, contacts], 2, 0).copy()
-    tangential = np.moveaxis(of_tangential[joints, contacts], 2, 0).copy()
-    way, turn = onward()
-    crossed: tuple[int, int, int] | None = None
+    path = _Path(step, start)
     for piece in range(1, most):
-        slope = normal * turn[:, :2] + tangential * turn[:, 2:]
-        slope *= sign
-        if crossed is not None:
-            slope[crossed] = 0.0
-        value = normal * forces[:, :2] + tangential * forces[:, 2:]
-        lengths = np.full(value.shape, math.inf)
-        np.divide(np.maximum(value, 0.0), -slope, out=lengths, where=slope < 0)
-        edge, joint, end = (int(i) for i in np.unravel_index(lengths.argmin(), value.shape))
-        length = float(lengths[edge, joint, end])
-        if sign > 0 and length >= left:
-            held = np.where(own, forces[:, :2] + left * turn[:, :2], 0.0)
-            return x + left * way, held, piece
+        length, at = path.to_edge()
+        if path.falls and length >= path.left:
+            return (*path.ended(), piece)
         if not math.isfinite(length):
             return None
-        x, forces = x + length * sign * way, forces + length * sign * turn
-        left -= sign * length
-        was = int(contacts[joint, end])
-        now, back = beyond(was, edge, float(forces[joint, 2 + end]))
-        gone = _of_joint(step, joint, contacts, own, push)
-        contacts[joint, end] = now
-        own[joint] = friction.steep[joint] & (contacts[joint] >= SLIDES_UP)
-        here = _of_joint(step, joint, contacts, own, push)
-        system.add(joint, here[0] - gone[0], here[1] - gone[1])
-        if friction.steep[joint]:
-            size = abs(forces[joint, 2 + end])
-            closed = size if own[joint, end] else flat[joint, 0] * size
-            forces[joint, end] = 0.0 if OPEN in {was, now} else closed
-        normal[:, joint, end] = of_normal[joint, now]
-        tangential[:, joint, end] = of_tangential[joint, now]
-        way, turn = onward()
-        crossed = back, joint, end
-        rising = normal[crossed] * turn[joint, end] + tangential[crossed] * turn[joint, 2 + end]
-        sign = 1.0 if rising > 0 else -1.0
+        path.cross(length, at)
     return None
 
 
-def _of_joint(
-    step: Step, joint: int, contacts: Contacts, own: NDArray[np.bool_], push: Array
-) -> tuple[Array, Array]:
-    """Return what a joint adds to the system: a matrix (6, 6), and a right side (6,)."""
-    rows, lean = step.rows[joint], step.friction.lean[joint]
-    acting, weight = _acting(rows, contacts[joint], lean, own[joint])
-    return np.matmul(acting.T * weight, rows), (push[joint] * (weight > 0)) @ acting
+Edge = tuple[int, int, int]
+"""One of the two edges of what a contact does, its joint, and its end."""
+
+
+class _Path:
+    """Where a path has come to, and its way on."""
+
+    def __init__(self, step: Step, start: _Start) -> None:
+        self._step, self._push = step, start.push
+        self._x, self._forces, self.left = start.x, start.forces, start.left
+        self._contacts, friction = start.contacts, step.friction
+        self.falls, self._crossed = True, None
+        self._own, self._flat = friction.own(self._contacts), friction.flattest
+        acting, weight = _acting(step.rows, self._contacts, friction.lean, self._own)
+        right = start.pull + step.bands.pull(acting, self._push * (weight > 0))
+        self._system = System(step.bands, step.bands.band(acting, weight, step.rows), right)
+        mu = np.minimum(friction.mu, 1 / FLATTEST)
+        self._of_normal, self._of_tangential = edges(mu[:, 0], friction.steep[:, 0])
+        joints, done = np.arange(len(mu))[:, None], self._contacts
+        self._normal = np.moveaxis(self._of_normal[joints, done], 2, 0).copy()
+        self._tangential = np.moveaxis(self._of_tangential[joints, done], 2, 0).copy()
+        self._onward()
+
+    def _onward(self) -> None:
+        """Find how x and the forces change."""
+        bands, rows, push = self._step.bands, self._step.rows, self._push
+        if not self._own.any():
+            self._way = self._system.solve()
+            self._turn = push - STIFF * bands.along(rows, self._way)
+            return
+        slides = Slides(bands, rows, self._contacts, self._own, self._flat)
+        self._way, held = slides.solve(self._system.solve, push[:, :2] / STIFF, STIFF)
+        self._turn = push - STIFF * bands.along(rows, self._way)
+        self._turn[:, :2] = np.where(self._own, held, self._turn[:, :2])
+
+    def to_edge(self) -> tuple[float, Edge]:
+        """Return how far it is to where a contact changes over, and which edge that is."""
+        turn, forces = self._turn, self._forces
+        slope = self._normal * turn[:, :2] + self._tangential * turn[:, 2:]
+        if not self.falls:
+            slope = -slope
+        if self._crossed is not None:
+            slope[self._crossed] = 0.0
+        value = self._normal * forces[:, :2] + self._tangential * forces[:, 2:]
+        lengths = np.full(value.shape, math.inf)
+        np.divide(np.maximum(value, 0.0), -slope, out=lengths, where=slope < 0)
+        edge, joint, end = (int(i) for i in np.unravel_index(lengths.argmin(), value.shape))
+        return float(lengths[edge, joint, end]), (edge, joint, end)
+
+    def ended(self) -> tuple[Array, Array]:
+        """Return x where nothing is left, and friction that is an unknown of its own."""
+        held = np.where(self._own, self._forces[:, :2] + self.left * self._turn[:, :2], 0.0)
+        return self._x + self.left * self._way, held
+
+    def cross(self, length: float, at: Edge) -> None:
+        """Go on to an edge, and across."""
+        gone = length if self.falls else -length
+        self._x = self._x + gone * self._way
+        self._forces = self._forces + gone * self._turn
+        self.left -= gone
+        edge, joint, end = at
+        was = int(self._contacts[joint, end])
+        now, back = beyond(was, edge, float(self._forces[joint, 2 + end]))
+        self._change(joint, end, now)
+        if self._step.friction.steep[joint]:
+            size = abs(self._forces[joint, 2 + end])
+            closed = size if self._own[joint, end] else self._flat[joint, 0] * size
+            self._forces[joint, end] = 0.0 if OPEN in {was, now} else closed
+        self._normal[:, joint, end] = self._of_normal[joint, now]
+        self._tangential[:, joint, end] = self._of_tangential[joint, now]
+        self._onward()
+        self._crossed = back, joint, end
+        turn = self._turn[joint]
+        rising = self._normal[self._crossed] * turn[end]
+        self.falls = bool(rising + self._tangential[self._crossed] * turn[2 + end] > 0)
+
+    def _change(self, joint: int, end: int, now: int) -> None:
+        """Let a contact do something else, and change the system by what that changes."""
+        rows, push = self._step.rows[joint], self._push[joint]
+        contacts = np.stack([self._contacts[joint]] * 2)
+        own = np.stack([self._own[joint]] * 2)
+        contacts[1, end] = now
+        own[1] = self._step.friction.steep[joint] & (contacts[1] >= SLIDES_UP)
+        self._contacts[joint], self._own[joint] = contacts[1], own[1]
+        both = np.broadcast_to(rows, (2, *rows.shape))
+        acting, weight = _acting(both, contacts, self._step.friction.lean[joint], own)
+        matrix = np.matmul(acting.swapaxes(1, 2) * weight[:, None], rows)
+        right = np.matmul((push * (weight > 0))[:, None], acting)[:, 0]
+        self._system.add(joint, matrix[1] - matrix[0], right[1] - right[0])
 
 
 def _acting(

@@ -32,8 +32,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from blocksim.blocks.assembly import Array
-from blocksim.engines.contact.active_set import settle
-from blocksim.engines.contact.associated import minimised
+from blocksim.engines.contact.active_set import by_active_set
+from blocksim.engines.contact.associated import augmented_lagrangian
 from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.coulomb import Contacts, Friction
@@ -41,11 +41,10 @@ from blocksim.engines.contact.interior import central_path
 from blocksim.engines.contact.path_following import (
     LAST_PIECES,
     NEAREST_PIECES,
-    come_together,
-    put_right,
+    path_from_apart,
+    path_from_guess,
 )
 from blocksim.engines.contact.step import Answer, Step
-from blocksim.engines.contact.threads import one_thread
 
 EXACT = 1e-16
 """Yield of a contact that is round-off, with accelerations of 1 [g]."""
@@ -151,11 +150,16 @@ class ContactProblem:
             Of a similar step.
         precision : float
             Yield of contacts at which the step counts as solved [g].
-
-        Returns
-        -------
-        Solution
         """
+        if not len(rates):
+            # Nothing touches anything.
+            return Solution(
+                acceleration=free,
+                forces=np.zeros((0, 4)),
+                contacts=np.zeros((0, 2), dtype=np.int8),
+                residual=0.0,
+                iterations=0,
+            )
         step = Step(
             bands=self.bands,
             rows=rows * self.scale,
@@ -163,7 +167,7 @@ class ContactProblem:
             free=(free * self.root).ravel(),
             friction=self.friction,
         )
-        with one_thread(wide=self.bands.is_wide):
+        with self.bands.one_thread():
             return self._solved(step, start, precision)
 
     def _solved(self, step: Step, start: Solution | None, precision: float) -> Solution:
@@ -193,14 +197,14 @@ class ContactProblem:
         guess = Answer(x=x, forces=start.forces, contacts=start.contacts)
         yield _at_rest(step, guess)
         yield guess
-        yield put_right(step, guess, LAST_PIECES)
+        yield path_from_guess(step, guess, LAST_PIECES)
         for tame in _tamed(step):
             if not tried.is_enough:
                 yield (guess := _coulomb(tame))
         if not tried.is_enough:
-            yield put_right(step, guess, LAST_PIECES)
+            yield path_from_guess(step, guess, LAST_PIECES)
         if not tried.is_enough:
-            yield come_together(step)
+            yield path_from_apart(step)
 
     def _from_nothing(self, step: Step, tried: _Tried) -> Iterator[Answer | None]:
         """Give what contacts may do at rest, the likeliest and cheapest first."""
@@ -210,7 +214,7 @@ class ContactProblem:
         if not steep:
             yield first
         if steep or float(np.abs(x).max()) < NEAR_REST:
-            x, pressed, systems = minimised(step, cones, x, pressed)
+            x, pressed, systems = augmented_lagrangian(step, cones, x, pressed)
             answer = cones.answer(step, x, pressed, systems)
             yield _at_rest(step, answer)
             if steep:
@@ -221,11 +225,11 @@ class ContactProblem:
         for tame in _tamed(step):
             yield (last := _coulomb(tame))
         if not tried.is_enough:
-            yield put_right(step, last, NEAREST_PIECES)
+            yield path_from_guess(step, last, NEAREST_PIECES)
         if not tried.is_enough:
-            yield put_right(step, first)
+            yield path_from_guess(step, first)
         if not tried.is_enough:
-            yield come_together(step, last.forces)
+            yield path_from_apart(step, last.forces)
 
 
 class _Tried:
@@ -247,7 +251,9 @@ class _Tried:
 
     def settle(self, guess: Answer) -> bool:
         """Look for the solution near a guess; tell whether it is found."""
-        found = [guess] if guess.is_settled else settle(self._step, guess, self._precision)
+        found = (
+            [guess] if guess.is_settled else by_active_set(self._step, guess, self._precision)
+        )
         # What is looked for near a guess may be farther off than the guess.
         self._answers += [guess, *found]
         self.systems += self._answers[-1].systems
@@ -323,6 +329,6 @@ def _parted(step: Step, answer: Answer) -> Iterator[Answer]:
         step = replace(step, friction=Friction(np.where(parts, 0.0, step.friction.mu)))
         cones = Cones.of(step)
         x, pressed, systems = central_path(step, cones, dilates=True)
-        x, pressed, more = minimised(step, cones, x, pressed)
+        x, pressed, more = augmented_lagrangian(step, cones, x, pressed)
         answer = cones.answer(step, x, pressed, systems + more)
         yield answer

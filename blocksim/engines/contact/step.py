@@ -3,24 +3,35 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.coulomb import (
+    LEAN,
     OPEN,
     SLIDES_DOWN,
     SLIDES_UP,
     STICKS,
     Contacts,
-    Doing,
+    ContactStatus,
     Friction,
     leaning,
 )
-from blocksim.engines.contact.slides import Slides
+
+SOFT, STIFF = 1e3, 1e9
+"""Least and largest stiffness."""
+STIFFNESS = 1e4
+"""Stiffness times accelerations, limited by round-off."""
+MOVING, ROUGH = 4e5, 1e-12
+"""The same where no contact has to yield by less than that: forces are asked for 1e-10 only."""
+STEEPEST = 3.0
+"""Friction above which springs are softer: friction multiplies their forces."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -119,6 +130,76 @@ class Step:
         return contacts
 
 
+class Slides:
+    """Contacts that slide with steep friction: the border of a system (1 + matrix) x = right.
+
+    Their pressure is a small share of their friction (none if mu = inf). Taken from pressure,
+    friction would be a tiny number times a huge one. So it is an unknown w of its own, and the
+    equation that goes with it is pressure's: -k n = w / mu. There are few such contacts; they
+    border the banded system of the others.
+
+    Parameters
+    ----------
+    bands : Bands
+    rows : (joints, 4, 6) float
+        Normal velocities of the two contacts, then the tangential ones.
+    contacts : (joints, 2) int
+    own : (joints, 2) bool
+        Which of them these are.
+    flat : (joints, 1) float
+        Pressure per friction.
+    """
+
+    def __init__(
+        self,
+        bands: Bands,
+        rows: Array,
+        contacts: Contacts,
+        own: NDArray[np.bool_],
+        flat: Array,
+    ) -> None:
+        self._bands, self._own = bands, own
+        joint, end = np.nonzero(own)
+        self._joint, self._seen = joint, rows[joint, end]
+        self._flat = flat[joint, 0]
+        self._acting = LEAN[contacts[own]][:, None] * rows[joint, 2 + end]
+        self._acting += self._flat[:, None] * self._seen
+
+    def solve(
+        self, solve: Callable[[Array], Array], target: Array, stiffness: float
+    ) -> tuple[Array, Array]:
+        """Solve the bordered system.
+
+        Parameters
+        ----------
+        solve : callable
+            Takes what comes besides the right side, shape (3 blocks, k), and returns the
+            solutions of the system with the right side first, shape (3 blocks, 1 + k).
+        target : (joints, 2) float
+            Normal velocities that would leave contacts without pressure.
+        stiffness : float
+
+        Returns
+        -------
+        x : (3 blocks,) float
+        held : (joints, 2) float
+            Friction of these contacts, 0 elsewhere. All is nan where the system is singular.
+        """
+        count, place = len(self._joint), self._bands.place[self._joint]
+        columns = np.zeros((self._bands.size + 1, count))
+        np.add.at(columns, (place, np.arange(count)[:, None]), self._acting)
+        found = solve(columns[:-1])
+        padded = np.vstack([found, np.zeros(1 + count)])
+        seen = (self._seen[:, :, None] * padded[place]).sum(axis=1)
+        small = seen[:, 1:] + np.diag(self._flat / stiffness)
+        held = np.zeros(self._own.shape)
+        try:
+            held[self._own] = np.linalg.solve(small, target[self._own] - seen[:, 0])
+        except np.linalg.LinAlgError:
+            held[self._own] = np.nan
+        return found[:, 0] + found[:, 1:] @ held[self._own], held
+
+
 class Linear:
     """A step while its contacts do as said, with springs: one banded system, factored once.
 
@@ -132,16 +213,16 @@ class Linear:
 
     def __init__(self, step: Step, contacts: Contacts, stiffness: float) -> None:
         self._step, self._stiffness = step, stiffness
-        self.doing = doing = Doing(step.friction, contacts)
+        self.status = status = ContactStatus(step.friction, contacts)
         # Where nothing slides the system is symmetric.
         rows, seen = step.rows, None
-        if doing.some_slide:
-            rows, seen = leaning(step.rows, doing.slope), step.rows
-        self._solve = step.bands.factored(rows, stiffness * doing.springs, seen)
+        if status.some_slide:
+            rows, seen = leaning(step.rows, status.slope), step.rows
+        self._solve = step.bands.factored(rows, stiffness * status.springs, seen)
         self._slides = None
-        if doing.own is not None:
+        if status.own is not None:
             flattest = step.friction.flattest
-            self._slides = Slides(step.bands, step.rows, contacts, doing.own, flattest)
+            self._slides = Slides(step.bands, step.rows, contacts, status.own, flattest)
 
     def way(self, x: Array, glued: Array, held: Array) -> tuple[Array, Array]:
         """Return the change of x that balances the springs, nan where there is none.
@@ -158,7 +239,7 @@ class Linear:
         solve, nothing = self._solve, np.zeros_like(held)
         if solve is None:
             return np.full_like(x, np.nan), nothing
-        forces = self.doing.forces(glued, held)
+        forces = self.status.forces(glued, held)
         right = -self._step.imbalance(x, forces)
         if self._slides is None:
             return solve(right), nothing
@@ -167,3 +248,17 @@ class Linear:
             (glued[:, :2] - forces[:, :2]) / self._stiffness,
             self._stiffness,
         )
+
+
+def stiffness_at(friction: Friction, x: Array, precision: float = 0.0) -> float:
+    """Return the stiffness that round-off allows at accelerations x.
+
+    Preloaded with the forces found last, springs give those of rigid contact within a few
+    rounds, however soft they are. The stiffer they are, the fewer systems they take, but
+    round-off grows with it; yields are wanted to a precision [g].
+    """
+    rough = precision >= ROUGH and not friction.some_steep
+    # Steep friction multiplies nothing: it is an unknown of its own.
+    softer = max(1.0, friction.most_lean / STEEPEST)
+    largest = max(float(np.abs(x).max()), 1e-9)
+    return min(max((MOVING if rough else STIFFNESS) / softer / largest, SOFT), STIFF)

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.blocks.space.assembly import FaceJoint
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.assembly import FaceJoint, SpatialAssembly
 from blocksim.engines.solid.bodies import Bodies
 from blocksim.engines.solid.hulls import Hulls
 from blocksim.engines.solid.meeting import Points, meet, near
@@ -17,15 +17,9 @@ ROUGH = 1e3
 
 
 class FrictionBetween:
-    """Friction between hulls: of their joint where they have one, else that of all.
+    """Friction between hulls: of their joint where they have one, else that of all."""
 
-    Parameters
-    ----------
-    problem : SpatialProblem
-    hulls : Hulls
-    """
-
-    def __init__(self, problem: SpatialProblem, hulls: Hulls) -> None:
+    def __init__(self, problem: Problem[SpatialAssembly], hulls: Hulls) -> None:
         self._all, self._bodies = min(problem.mu, ROUGH), body_of(hulls)
         self._own: dict[tuple[int, int], float] = {}
         for joint, mu in zip(problem.assembly.joints, problem.friction.tolist(), strict=True):
@@ -54,37 +48,30 @@ def sides_of(joint: FaceJoint) -> tuple[int, int]:
     return first, second
 
 
+def as_built(bodies: Bodies, reach: float | Array) -> tuple[Points, NDArray[np.bool_]]:
+    """Return points at which hulls are within reach as built, and which are of a joint."""
+    hulls = bodies.hulls.placed(*bodies.built)
+    ways = np.broadcast_to(reach, len(hulls.owner))
+    pairs = near(hulls, ways)
+    points = meet(hulls, pairs, ways[pairs].sum(axis=1))
+    joined = {tuple(sorted(sides_of(each))) for each in bodies.problem.assembly.joints}
+    body = body_of(hulls)
+    sides = np.sort(np.stack([body[points.before], body[points.after]]), axis=0).T.tolist()
+    return points, np.array([tuple(each) in joined for each in sides], dtype=bool)
+
+
 class DrawnApart:
-    """Gaps of joints as they are drawn, which count as none.
+    """Gaps of joints as they are drawn, which count as none."""
 
-    Parameters
-    ----------
-    problem : SpatialProblem
-    bodies : Bodies
-    """
-
-    def __init__(self, problem: SpatialProblem, bodies: Bodies) -> None:
-        hulls = bodies.hulls.placed(*bodies.built)
-        self._count = len(hulls.owner)
-        joints = problem.assembly.joints
-        widest = max((abs(each.gap) for each in joints), default=0.0) / problem.assembly.size
-        reach = np.full(self._count, widest + 1e-6)
-        pairs = near(hulls, reach)
-        points = meet(hulls, pairs, reach[pairs].sum(axis=1))
-        keys = self._pairs(points)
-        self._keys, place = np.unique(keys, return_inverse=True)
+    def __init__(self, bodies: Bodies) -> None:
+        self._count, assembly = len(bodies.hulls.owner), bodies.problem.assembly
+        widest = max((abs(each.gap) for each in assembly.joints), default=0.0) / assembly.size
+        points, joined = as_built(bodies, widest + 1e-6)
+        self._keys, place = np.unique(self._pairs(points), return_inverse=True)
         self._gaps = np.full(len(self._keys), -np.inf)
         np.maximum.at(self._gaps, place, points.gaps)
         # What touches nothing as it is drawn has its gap.
-        joined = {tuple(sorted(sides_of(each))) for each in joints}
-        bodies_of = body_of(hulls)
-        sides = np.sort(
-            np.stack(
-                [bodies_of[self._keys // self._count], bodies_of[self._keys % self._count]]
-            ),
-            axis=0,
-        ).T.tolist()
-        self._gaps[[tuple(each) not in joined for each in sides]] = 0.0
+        self._gaps[place[~joined]] = 0.0
 
     def _pairs(self, points: Points) -> NDArray[np.int64]:
         first, second = (f(points.before, points.after) for f in (np.minimum, np.maximum))

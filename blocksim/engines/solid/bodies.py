@@ -5,11 +5,15 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from blocksim.blocks.assembly import Array
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.engines.contact.banded import Bands
 from blocksim.engines.solid.hulls import hulls_of
+from blocksim.engines.solid.step import Step
 
 
 class Place(NamedTuple):
@@ -33,13 +37,9 @@ class Bodies:
     """Blocks of a problem with frames that turn with them, along their principal axes.
 
     Lengths are in units of the size, masses of the mean block's.
-
-    Parameters
-    ----------
-    problem : SpatialProblem
     """
 
-    def __init__(self, problem: SpatialProblem) -> None:
+    def __init__(self, problem: Problem[SpatialAssembly]) -> None:
         self.problem, assembly = problem, problem.assembly
         size, weights = assembly.size, assembly.weights
         masses = weights / weights.mean()
@@ -48,7 +48,7 @@ class Bodies:
         # A mirror image is no frame.
         axes[np.linalg.det(axes) < 0, :, 0] *= -1.0
         self.inertia: Array = masses[:, None] * np.hstack([np.ones_like(moments), moments])
-        self.root: Array = np.sqrt(self.inertia).ravel()
+        self.root: Array = np.sqrt(self.inertia)
         self.built = Place(
             np.vstack([assembly.centres / size, np.zeros(3)]),
             np.concatenate([axes, np.eye(3)[None]]),
@@ -61,11 +61,14 @@ class Bodies:
     def _acting(self) -> list[tuple[int, Array, Array]]:
         """Return block, force [mean weights] and arm in its frame of each load at a point."""
         problem, found = self.problem, list[tuple[int, Array, Array]]()
-        unit, size = float(problem.assembly.weights.mean()), problem.assembly.size
-        for loads, factor in ((problem.dead, 1.0), (problem.live, problem.load)):
-            for index, force, arm in problem.forces_of(loads):
+        assembly = problem.assembly
+        acting = ((problem.dead, 1.0), (problem.live, problem.load))
+        for factor, load in ((factor, load) for loads, factor in acting for load in loads):
+            for index, force, arm in assembly.forces_of(load):
                 frame = self.built.turns[index].T
-                found.append((index, factor * force / unit, frame @ (arm / size)))
+                found.append(
+                    (index, factor * force / assembly.unit_force, frame @ (arm / assembly.size))
+                )
         return found
 
     def pull(self, place: Place) -> Array:
@@ -77,6 +80,39 @@ class Bodies:
             found[index, 3:] += np.cross(arm, place.turns[index].T @ force)
         return found
 
+    def rows(self, axes: Array, places: Array, sides: NDArray[np.int64], there: Place) -> Array:
+        """Return what velocities at points are of scaled ones of both blocks, (points, 3, 12).
+
+        Parameters
+        ----------
+        axes : (points, 3, 3) float
+            The normal into the second block, and two ways across.
+        places : (points, 3) float
+        sides : (points, 2) int
+            Blocks, `SUPPORT` for what is fixed.
+        there : Place
+            Where the blocks are.
+        """
+        arms = places[:, None] - there.centres[sides]
+        about = np.cross(arms[:, :, None], axes[:, None])
+        about = np.matmul(about, there.turns[sides])
+        along = np.broadcast_to(axes[:, None], about.shape)
+        found = np.concatenate([along, about], axis=3) / self.root[sides][:, :, None]
+        found *= np.where(sides == SUPPORT, 0.0, [-1.0, 1.0])[:, :, None, None]
+        return found.transpose(0, 2, 1, 3).reshape(-1, 3, 12)
+
+    def asked(
+        self,
+        rows: Array,
+        sides: NDArray[np.int64],
+        drift: Array,
+        pull: Array,
+        friction: Array,
+    ) -> Step:
+        """Return what a step asks at points; see `Step`, and `pull` for forces without them."""
+        bands = Bands(sides[:, 0], sides[:, 1], len(self.root), each=6)
+        return Step(bands, rows, drift, (pull / self.root).ravel(), friction)
+
     def turning(self, velocities: Array) -> Array:
         """Return what keeps a turning block turning: - w x I w, (blocks, 6)."""
         spin = velocities[:, 3:]
@@ -84,13 +120,17 @@ class Bodies:
         found[:, 3:] = -np.cross(spin, self.inertia[:, 3:] * spin)
         return found
 
-    def energy(self, place: Place, velocities: Array) -> tuple[float, float]:
-        """Return potential and kinetic energy [mean weights times the size]."""
+    def potential(self, place: Place) -> float:
+        """Return the potential energy [mean weights times the size]."""
         centres = place.centres[:-1]
         height = -float((self.weights[:, None] * self.problem.gravity * centres).sum())
         for index, force, arm in self._loads:
             height -= float(force @ (centres[index] + place.turns[index] @ arm))
-        return height, float((self.inertia * velocities**2).sum() / 2)
+        return height
+
+    def kinetic(self, velocities: Array) -> float:
+        """Return the kinetic energy of velocities in frames, (blocks, 6), likewise."""
+        return float((self.inertia * velocities**2).sum() / 2)
 
     def poses(self, place: Place) -> Array:
         """Return centres and rotation vectors since they were built, (blocks, 6)."""

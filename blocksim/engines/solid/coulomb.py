@@ -8,9 +8,10 @@ where u are velocities at the points of contact at the end of the step over its 
 opens nothing.
 
 A solution is looked for by Newton's method on springs that follow it: p is the point of the
-friction cone that is nearest, across its axis, to p - r u, with stiff springs r. From nothing
-forces come from a cone programme in which slip opens by mu times itself: of rest and motion,
-where Coulomb's law allows both, that is rest. Else they are the end of a path (`path`).
+friction cone that is nearest, across its axis, to p - r u, with stiff springs r. They begin
+with what contacts did in the last step, or with forces of a cone programme, in which slip opens
+by mu times itself, less a guess of that. From nothing no slip is guessed: of rest and motion,
+where Coulomb's law allows both, that finds rest. Else forces are the end of a path (`path`).
 """
 
 from __future__ import annotations
@@ -24,60 +25,71 @@ from scipy import sparse
 from blocksim.blocks.assembly import Array
 from blocksim.common.conic import Cone, solved_cones
 from blocksim.engines.solid.path import ROUNDED, followed
-from blocksim.engines.solid.step import (
-    Answer,
-    Step,
-    on_diagonal,
-    projected,
-    rows_of,
-    solved,
-)
+from blocksim.engines.solid.step import Answer, Step, projected
 
 STIFF = 1e5
 """Springs over the mean mass."""
 ROUNDS, TRIES = 25, 60
 """Most times that springs follow, and most of Newton's steps for each."""
-AT_ONCE = 6
-"""The same where forces of the last step may do."""
+BRIEFLY = 25
+"""Most of Newton's steps in motion, where another guess costs as much."""
 HALVINGS = 6
-UNSOLVED = 1e-4
+GUESSES, MEMORY, NEARER = 10, (1, 4), 0.7
+"""Most guesses of the slip, of how many the next is made, and what makes an answer nearer:
+its residual over that of those before."""
+UNSOLVED = 1e-2
 """Residual of what is no solution."""
+NEAR = 1e-3
+"""Residual of forces of the last step from which blocks at rest go on; else from nothing."""
 SOLVED, ENOUGH = 1e-9, 3e-8
 """Residual of a solution from nothing, and of one in motion."""
-FINEST = 1e-10
-"""Gap and residuals at which a cone programme may end."""
+FINEST, IN_MOTION = 1e-10, 1e-12
+"""Gap and residuals at which a cone programme may end: forces of rest come from well within the
+cones, slip from a programme that ends where it gets no farther."""
 LESS = 0.9997
 """Share of friction that is taken where that much did not tell."""
-NEAR = 1e-2
-"""Smoothing with which a path begins at the forces of the last step."""
-AT_REST = 1e-9
-"""Velocity over the step of blocks at rest, which a path might set in motion."""
+AT_REST = 1e-6
+"""Velocity over the step of blocks at rest."""
 EXACT = 1e-13
 """Residual at which nothing is left to do."""
+FINELY, ROUGHLY = 1e-15, 1e-10
+"""Imbalance over the forces at which Newton's method may end, from nothing and in motion."""
 
 
-def solve(step: Step, forces: Array | None) -> Answer:
-    """Solve a step, from forces close by or from nothing.
+def solve(step: Step, last: Array | None, *, paths: bool = True) -> Answer:
+    """Solve a step, from what was found in the last one or from nothing.
 
     Parameters
     ----------
     step : Step
-    forces : (points, 3) float or None
+    last : (points, 2, 3) float or None
+        Forces, and velocities over the step.
+    paths : bool, optional
+        Whether paths are followed where nothing else leads to a solution: they take long.
     """
     if not len(step.friction):
         return Answer(step.free, np.zeros((0, 3)), 0.0)
-    best: Answer | None = None
-    if forces is not None:
-        best = _followed(step, forces, AT_ONCE)
-        if best.residual <= ENOUGH:
-            return best
-    for guess in _guesses(step, forces):
-        found = _followed(step, guess)
-        if best is None or found.residual < best.residual:
+    moves = last is not None
+    # At rest what is left over would add up.
+    briefly = moves and float(np.abs(step.drift).max()) > AT_REST
+    best, enough = Answer(step.free, np.zeros_like(step.drift), np.inf), SOLVED
+    near = last is None
+    if last is not None:
+        enough = ENOUGH
+        near = briefly or step.residual(step.pushed_by(last[:, 0]), last[:, 0]) <= NEAR
+        if near:
+            best = _gone_on(step, last[:, 0], last[:, 1], briefly=briefly)
+    begun = last if briefly else None
+    guesses = _guesses(step, begun, paths=paths) if best.residual > enough else ()
+    for guess in guesses:
+        found = _followed(step, guess, briefly=briefly)
+        if found.residual < best.residual:
             best = found
-        if best.residual <= (SOLVED if forces is None else ENOUGH):
+        if best.residual <= enough:
             break
-    assert best is not None  # noqa: S101
+    if last is not None and not near and best.residual > enough:
+        found = _followed(step, last[:, 0])
+        best = found if found.residual < best.residual else best
     return best if best.residual <= UNSOLVED else _as_last_resort(step, best)
 
 
@@ -93,65 +105,111 @@ def _as_last_resort(step: Step, best: Answer) -> Answer:
     return Answer(x, forces, max(best.residual, step.residual(x, forces)))
 
 
-def _guesses(step: Step, forces: Array | None) -> Iterator[Array]:
+def _guesses(step: Step, last: Array | None, *, paths: bool) -> Iterator[Array]:
     """Give forces to begin with, the likeliest and cheapest first."""
-    moves = float(np.abs(step.drift).max()) > AT_REST
-    if forces is not None and moves:
-        near = followed(step, ROUNDED[0], forces, NEAR)
-        yield forces if near is None else near
-    opening = dilating(step)
-    if opening is not None:
-        yield opening
+    if last is None:
+        opening = dilating(step)
+        if opening is not None:
+            yield opening
         # Of rest near its limit the forces lie on the cones; with less friction within.
         less = dilating(replace(step, friction=LESS * step.friction))
         if less is not None:
             yield less
-    for rounded in ROUNDED:
+    else:
+        for memory in MEMORY:
+            yield from _opening_less(step, _slip(last[:, 1]), memory)
+    for rounded in ROUNDED if paths else ():
         smoothed = followed(step, rounded)
         if smoothed is not None:
             yield smoothed
 
 
-def _followed(step: Step, forces: Array, most: int = TRIES) -> Answer:
+def _opening_less(step: Step, slip: Array, memory: int) -> Iterator[Array]:
+    """Give forces of friction that opens by its slip less that which was guessed.
+
+    What slips in the answer is the next guess (Cadoux 2009), made of the last few as Anderson
+    1965 has it. The first is what slipped in the last step. Answers are given where they are
+    nearer to the law than those before.
+    """
+    slips, changes, least = list[Array](), list[Array](), np.inf
+    for _ in range(GUESSES):
+        forces = dilating(step, slip, IN_MOTION)
+        if forces is None:
+            return
+        x = step.pushed_by(forces)
+        residual = step.residual(x, forces)
+        if residual < NEARER * least:
+            least = residual
+            yield forces
+        slips.append(slip)
+        changes.append(_slip(step.velocities(x)) - slip)
+        ways = np.diff(slips[-memory:], axis=0).T
+        turns = np.diff(changes[-memory:], axis=0).T
+        shares = np.linalg.lstsq(turns, changes[-1], rcond=1e-8)[0]
+        slip = np.maximum(slip + changes[-1] - (ways + turns) @ shares, 0.0)
+
+
+def _slip(velocities: Array) -> Array:
+    return np.hypot(velocities[:, 1], velocities[:, 2])
+
+
+def _gone_on(step: Step, p: Array, u: Array, *, briefly: bool) -> Answer:
+    """Let springs follow from forces and, in motion, velocities of the last step.
+
+    What closes, sticks and slides there is taken to do so still, which stiff springs would not
+    see where forces and accelerations do not quite match.
+    """
+    if not briefly:
+        return _followed(step, p)
+    given = _given_way(p - STIFF * u, step.friction)
+    held = p + STIFF * np.einsum("pij,pj->pi", given, u - step.drift)
+    x = step.with_springs(STIFF * given, step.pushed_by(held))
+    return _followed(step, p, x, briefly=briefly)
+
+
+def _followed(
+    step: Step, forces: Array, x: Array | None = None, *, briefly: bool = False
+) -> Answer:
     """Let springs follow forces until these are the solution, or come no nearer."""
     p = forces
-    x = step.pushed_by(p)
+    if x is None:
+        x = step.pushed_by(p)
     best = Answer(x, p, step.residual(x, p))
-    stiff, worse = STIFF, 0
+    worse, exact = 0, ENOUGH if briefly else EXACT
     for _ in range(ROUNDS):
-        x, p, left = _balanced(step, x, p, stiff, most)
+        x, p, left = _balanced(step, x, p, briefly=briefly)
         if not np.isfinite(p).all():
             return best
         found = Answer(x, p, step.residual(x, p))
         worse = worse + 1 if found.residual > 0.3 * best.residual else 0
         if found.residual < best.residual:
             best = found
-        if best.residual <= EXACT or worse > 2 or (most < TRIES and left):
+        if best.residual <= exact or worse > 2 or (briefly and left):
             break
     return best
 
 
 def _balanced(
-    step: Step, x: Array, forces: Array, stiff: float, most: int
+    step: Step, x: Array, forces: Array, *, briefly: bool
 ) -> tuple[Array, Array, bool]:
     """Find accelerations that balance springs which begin with forces, by Newton's method.
 
     And the forces, and whether it had to be left before it got there.
     """
     scale = 1.0 + float(np.abs(step.free).max(initial=0.0))
-    left, q, pushed = _imbalance(step, x, forces, stiff)
+    left, q, pushed = _imbalance(step, x, forces)
     size = float(np.abs(left).max())
-    for _ in range(most):
-        if size <= 1e-15 * scale * (1 + float(np.abs(q).max())):
+    for _ in range(BRIEFLY if briefly else TRIES):
+        if size <= (ROUGHLY if briefly else FINELY) * scale * (1 + float(np.abs(q).max())):
             return x, q, False
-        change = _newton(step, pushed, left, stiff)
+        change = step.with_springs(STIFF * _given_way(pushed, step.friction), -left)
         if change is None:
             return x, q, True
         share: float = 1.0
         best: tuple[float, Array, tuple[Array, Array, Array]] | None = None
         for _ in range(HALVINGS):
             tried: Array = x + share * change
-            there = _imbalance(step, tried, forces, stiff)
+            there = _imbalance(step, tried, forces)
             reached = float(np.abs(there[0]).max())
             if best is None or reached < best[0]:
                 best = (reached, tried, there)
@@ -165,52 +223,55 @@ def _balanced(
     return x, q, True
 
 
-def _imbalance(step: Step, x: Array, forces: Array, stiff: float) -> tuple[Array, Array, Array]:
+def _imbalance(step: Step, x: Array, forces: Array) -> tuple[Array, Array, Array]:
     """Return what is left over, the forces within friction, and what springs ask for."""
-    pushed = forces - stiff * step.velocities(x)
+    pushed = forces - STIFF * step.velocities(x)
     q = projected(pushed, step.friction)
-    return x - step.free - step.matrix.T @ q.ravel(), q, pushed
+    return x - step.pushed_by(q), q, pushed
 
 
-def _newton(step: Step, pushed: Array, left: Array, stiff: float) -> Array | None:
-    """Return Newton's step of the accelerations."""
-    closed = np.flatnonzero(pushed[:, 0] > 0)
-    size = len(left)
-    system = sparse.identity(size, format="csc")
-    if len(closed):
-        tau, mu = pushed[closed], step.friction[closed]
-        across = np.hypot(tau[:, 1], tau[:, 2])
-        slides = across > mu * tau[:, 0]
-        blocks = np.broadcast_to(np.eye(3), (len(closed), 3, 3)).copy()
-        if slides.any():
-            way = tau[slides, 1:] / across[slides, None]
-            share = mu[slides] * tau[slides, 0] / across[slides]
-            turn = np.eye(2) - way[:, :, None] * way[:, None]
-            blocks[slides, 1:, 1:] = share[:, None, None] * turn
-            blocks[slides, 1:, 0] = mu[slides, None] * way
-        rows = step.matrix[rows_of(closed)]
-        system = system + stiff * (rows.T @ (on_diagonal(blocks) @ rows))
-    return solved(system, -left)
+def _given_way(pushed: Array, friction: Array) -> Array:
+    """Return how forces change with what springs ask for, (points, 3, 3); 0 where open."""
+    across = np.hypot(pushed[:, 1], pushed[:, 2])
+    found = (pushed[:, 0] > 0)[:, None, None] * np.eye(3)
+    slides = (across > friction * pushed[:, 0]) & (pushed[:, 0] > 0)
+    if slides.any():
+        way = pushed[slides, 1:] / across[slides, None]
+        share = friction[slides] * pushed[slides, 0] / across[slides]
+        turn = np.eye(2) - way[:, :, None] * way[:, None]
+        found[slides, 1:, 1:] = share[:, None, None] * turn
+        found[slides, 1:, 0] = friction[slides, None] * way
+    return found
 
 
-def dilating(step: Step) -> Array | None:
-    """Return forces of friction that dilates: a cone programme, and rest if there is any."""
-    points, size = len(step.friction), step.matrix.shape[1]
-    mu = step.friction
+def dilating(step: Step, slip: Array | float = 0.0, finest: float = FINEST) -> Array | None:
+    """Return forces of friction that dilates: a cone programme, and rest if there is any.
+
+    Parameters
+    ----------
+    step : Step
+    slip : (points,) float, optional
+        By mu times this much less than what slips opens.
+    finest : float, optional
+        Gap and residuals at which the programme may end.
+    """
+    points, size, mu = len(step.friction), step.bands.size, step.friction
     round_ = np.flatnonzero(mu > 0)
     smooth = np.flatnonzero(mu <= 0)
     # (u_n + mu slip, mu u_t) in the cone of the second order.
     scale = np.ones((points, 3))
     scale[:, 1:] = mu[:, None]
-    order = np.concatenate([rows_of(round_), 3 * smooth])
+    order = np.concatenate([(3 * round_[:, None] + np.arange(3)).ravel(), 3 * smooth])
     factor = scale.ravel()[order]
-    rows = -(sparse.diags(factor) @ step.matrix[order])
-    right = factor * step.drift[order]
+    rows = sparse.csc_matrix(-(sparse.diags(factor) @ step.matrix[order]))
+    drift = step.drift.copy()
+    drift[:, 0] += mu * slip
+    right = factor * drift.ravel()[order]
     cones: list[Cone] = [("second-order", 3)] * len(round_)
     if len(smooth):
         cones.append(("nonnegative", len(smooth)))
     inertia = sparse.identity(size, format="csc")
-    found = solved_cones(inertia, -step.free, rows.tocsc(), right, cones, finest=FINEST)
+    found = solved_cones(inertia, -step.free, rows, right, cones, finest=finest)
     z = np.array(found.z)
     if not np.isfinite(z).all():
         return None

@@ -7,7 +7,6 @@ the other's nearest face is cut out. Its corners are the points of contact.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -26,8 +25,7 @@ KINDS = 4
 """Corner of the other, corner of the face, crossing of two edges of faces; edge on edge."""
 
 
-@dataclass(frozen=True, eq=False)
-class Points:
+class Points(NamedTuple):
     """Points of contact. A point moves with `after`, its plane with `before`.
 
     Parameters
@@ -53,14 +51,7 @@ class Points:
 
     def at(self, which: Flags) -> Points:
         """Return some of them."""
-        return Points(
-            self.before[which],
-            self.after[which],
-            self.places[which],
-            self.normals[which],
-            self.gaps[which],
-            self.keys[which],
-        )
+        return Points._make(each[which] for each in self)
 
 
 class _Axis(NamedTuple):
@@ -72,7 +63,7 @@ class _Axis(NamedTuple):
 
     def at(self, which: Flags) -> _Axis:
         """Return those of some pairs."""
-        return _Axis(self.gap[which], self.side[which], self.face[which])
+        return _Axis._make(each[which] for each in self)
 
 
 def near(hulls: Hulls, margin: Array) -> Places:
@@ -136,14 +127,7 @@ def meet(hulls: Hulls, pairs: Places, margin: Array) -> Points:
 
 
 def _joined(found: list[Points]) -> Points:
-    return Points(
-        np.concatenate([each.before for each in found]),
-        np.concatenate([each.after for each in found]),
-        np.concatenate([each.places for each in found]),
-        np.concatenate([each.normals for each in found]),
-        np.concatenate([each.gaps for each in found]),
-        np.concatenate([each.keys for each in found]),
-    )
+    return Points._make(np.concatenate(each) for each in zip(*found, strict=True))
 
 
 def _by_faces(hulls: Hulls, pairs: Places) -> _Axis:

@@ -9,10 +9,9 @@ and Tseng 2003): Newton's method, from any beginning.
 from __future__ import annotations
 
 import numpy as np
-from scipy import sparse
 
 from blocksim.blocks.assembly import Array
-from blocksim.engines.solid.step import Step, on_diagonal, solved
+from blocksim.engines.solid.step import Step
 
 FIRST, LAST = 1.0, 1e-8
 """Smoothing, at first and where the path ends [mean weights]."""
@@ -29,9 +28,7 @@ STEPS, HALVINGS = 40, 12
 """Most of Newton's steps for one smoothing, and most halvings of one."""
 
 
-def followed(
-    step: Step, rounded: float, forces: Array | None = None, first: float = FIRST
-) -> Array | None:
+def followed(step: Step, rounded: float) -> Array | None:
     """Return forces at the end of a path, or where it breaks off; None where it never begins.
 
     Parameters
@@ -39,19 +36,13 @@ def followed(
     step : Step
     rounded : float
         Smoothing of the slip over that of the product.
-    forces : (points, 3) float, optional
-        To begin with.
-    first : float
-        Smoothing to begin with.
     """
     mu = step.friction
     scale = np.stack([np.ones_like(mu), mu, mu], axis=1)
     p = np.zeros_like(scale)
     p[:, 0] = 1.0
-    if forces is not None:
-        p = np.divide(forces, scale, out=np.zeros_like(scale), where=scale > 0)
     x = step.pushed_by(scale * p)
-    smooth, falls, reached = first, FALLS, None
+    smooth, falls, reached = FIRST, FALLS, None
     while smooth > LAST:
         found = _settled(step, scale, x, p, smooth, rounded)
         if found is not None:
@@ -114,7 +105,7 @@ def _left(
 ) -> tuple[Array, Array]:
     """Return what is left of balance, and of the product."""
     y, _ = _velocity(step, scale, x, smooth, rounded)
-    return x - step.free - step.matrix.T @ (scale * p).ravel(), p - Plus(p - y, smooth).value
+    return x - step.pushed_by(scale * p), p - Plus(p - y, smooth).value
 
 
 class Plus:
@@ -181,12 +172,11 @@ def _newton(
     plus = Plus(p - y, smooth)
     spring = np.matmul(plus.springs(), turn)
     given = np.einsum("pij,pj->pi", plus.inverse(), left[1])
-    matrix, middle = step.matrix, on_diagonal(scale[:, :, None] * spring)
-    system = sparse.identity(len(x)) + matrix.T @ (middle @ matrix)
-    dx = solved(system, -left[0] - matrix.T @ (scale * given).ravel())
+    right = -left[0] - step.bands.pull(step.rows, scale * given)
+    dx = step.with_springs(scale[:, :, None] * spring, right)
     if dx is None:
         return None
-    dp = -given - np.einsum("pij,pj->pi", spring, (matrix @ dx).reshape(-1, 3))
+    dp = -given - np.einsum("pij,pj->pi", spring, step.bands.along(step.rows, dx))
     if not (np.isfinite(dx).all() and np.isfinite(dp).all()):
         return None
     return dx, dp

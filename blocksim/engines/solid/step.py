@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from blocksim.blocks.assembly import Array
+from blocksim.engines.contact.banded import Bands
+
+ALIKE = np.ones((1, 3))
+"""Weights of the rows of a point."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,36 +21,62 @@ class Step:
 
     Parameters
     ----------
-    matrix : (3 points, 6 blocks) sparse
-        Velocities at the points, along the normal and two ways across, of scaled ones.
-    drift : (3 points,) float
+    bands : Bands
+        Which blocks each point is between.
+    rows : (points, 3, 12) float
+        Velocities at the points, along the normal and two ways across, of scaled ones of both
+        blocks; 0 for what is fixed.
+    drift : (points, 3) float
         Velocities without acceleration, over the step.
     free : (6 blocks,) float
         Accelerations without contact, scaled.
     friction : (points,) float
     """
 
-    matrix: Any
+    bands: Bands
+    rows: Array
     drift: Array
     free: Array
     friction: Array
 
     def velocities(self, x: Array) -> Array:
         """Return velocities at the points at the end, over the step, (points, 3)."""
-        return (self.matrix @ x + self.drift).reshape(-1, 3)
+        return self.bands.along(self.rows, x) + self.drift
 
     def pushed_by(self, forces: Array) -> Array:
         """Return the accelerations that forces give, (6 blocks,)."""
-        return self.free + self.matrix.T @ forces.ravel()
+        return self.free + self.bands.pull(self.rows, forces)
 
     def residual(self, x: Array, forces: Array) -> float:
         """Return how far accelerations and forces are from a solution."""
-        left = x - self.free - self.matrix.T @ forces.ravel()
+        left = x - self.pushed_by(forces)
         u = self.velocities(x)
         # Of a contact either the pressure or the velocity is 0.
         off = np.abs(forces - projected(forces - u, self.friction)).max(initial=0.0)
         scale = max(1.0, float(np.abs(x).max(initial=0.0)))
         return max(float(np.abs(left).max(initial=0.0)), float(off)) / scale
+
+    def with_springs(self, springs: Array, right: Array) -> Array | None:
+        """Solve (1 + H^T S H) x = right; None where that says nothing of some unknowns.
+
+        Parameters
+        ----------
+        springs : (points, 3, 3) float
+            S, of each point; H are the rows.
+        right : (6 blocks,) float
+        """
+        band = self.bands.band(self.rows, ALIKE, np.matmul(springs, self.rows))
+        found = self.bands.solve_band(band, right)
+        return found if np.isfinite(found).all() else None
+
+    @property
+    def matrix(self) -> Any:
+        """The rows as a sparse matrix, (3 points, 6 blocks)."""
+        columns = np.broadcast_to(self.bands.place[:, None], self.rows.shape)
+        at = np.arange(3 * len(self.rows)).reshape(-1, 3, 1)
+        rows, inside = np.broadcast_to(at, self.rows.shape), columns < self.bands.size
+        entries: Any = (self.rows[inside], (rows[inside], columns[inside]))
+        return sparse.csr_matrix(entries, shape=(3 * len(self.rows), self.bands.size))
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,22 +107,3 @@ def projected(pushed: Array, friction: Array) -> Array:
     found[slides, 1:] *= (most[slides] / across[slides])[:, None]
     found[found[:, 0] <= 0, 1:] = 0.0
     return found
-
-
-def rows_of(points: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the rows of points, three of each."""
-    return (3 * points[:, None] + np.arange(3)).ravel()
-
-
-def on_diagonal(blocks: Array) -> Any:
-    """Return a sparse matrix with blocks along its diagonal, (k, n, n)."""
-    count = np.arange(len(blocks) + 1)
-    return sparse.bsr_matrix((blocks, count[:-1], count)).tocsr()
-
-
-def solved(system: Any, right: Array) -> Array | None:
-    """Solve equations of the blocks; None where they say nothing of some of them."""
-    try:
-        return cast("Any", splu(system.tocsc(), permc_spec="MMD_AT_PLUS_A")).solve(right)
-    except RuntimeError:
-        return None

@@ -1,4 +1,4 @@
-"""Blocks in space in motion: smooth between impacts, each step's contacts solved to the end.
+"""`direct` in space: smooth between impacts, each step's contacts solved to the end.
 
 Where nothing closes a step is of second order (Moreau and Jean, theta = 1/2): forces are those
 of its middle, contact and friction hold for the velocities at its end, and blocks go on by the
@@ -9,15 +9,17 @@ not pass. What overlaps all the same is pushed apart, which changes no velocity.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
 
-from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.blocks.space.points import JointPoints
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.engines.base import Quality, Settings
+from blocksim.engines.energy import Balance
 from blocksim.engines.solid.between import (
     ROUGH,
     DrawnApart,
@@ -26,10 +28,10 @@ from blocksim.engines.solid.between import (
     sides_of,
 )
 from blocksim.engines.solid.bodies import Bodies, Place
-from blocksim.engines.solid.coulomb import UNSOLVED, solve
+from blocksim.engines.solid.coulomb import dilating, solve
 from blocksim.engines.solid.facing import frames
 from blocksim.engines.solid.meeting import Points, meet, near
-from blocksim.engines.solid.step import Answer, Step, on_diagonal, rows_of
+from blocksim.engines.solid.step import Step
 
 COARSE = 1e-5
 """Residual of a step that is halved."""
@@ -52,35 +54,71 @@ NEAR = 1e-3
 
 
 class Seen(NamedTuple):
-    """Points of contact as something is asked of them: rows of velocities, and gaps."""
+    """Points of contact as something is asked of them.
 
-    rows: Any
-    gaps: Array
-
-
-class Stepping:
-    """Poses and velocities of blocks, carried on by steps.
-
-    Parameters
-    ----------
-    problem : SpatialProblem
+    Rows of velocities of both blocks, (points, 3, 12), the blocks, (points, 2), and gaps.
     """
 
-    def __init__(self, problem: SpatialProblem) -> None:
-        self.bodies = Bodies(problem)
+    rows: Array
+    sides: NDArray[np.int64]
+    gaps: Array
+
+    def along(self, velocities: Array) -> Array:
+        """Return velocities at the points, (points, 3), of scaled ones of the blocks."""
+        return np.matmul(self.rows, velocities[self.sides].reshape(-1, 12, 1))[:, :, 0]
+
+
+class SolidBlocks:
+    """Blocks in space, their poses and velocities: a world of `engines/base.py`.
+
+    Poses are x, y, z in units of the size, then rotation vectors since they were built.
+    """
+
+    def __init__(self, problem: Problem[SpatialAssembly], settings: Settings) -> None:
+        self._step = settings.step
+        self.bodies = bodies = Bodies(problem)
         self._contacts = JointPoints(problem)
         self._place, self._velocities = self.bodies.built, np.zeros_like(self.bodies.inertia)
         self._speeding = np.zeros_like(self._velocities)
         self._friction = FrictionBetween(problem, self.bodies.hulls)
-        self._drawn = DrawnApart(problem, self.bodies)
-        self._forces, self._keys = np.zeros((0, 3)), np.zeros(0, dtype=np.int64)
+        self._drawn = DrawnApart(self.bodies)
+        self._last, self._keys = np.zeros((0, 2, 3)), np.zeros(0, dtype=np.int64)
         self._residual = self._penetration = 0.0
+        self._balance = Balance(
+            bodies.potential, lambda _, moved: bodies.kinetic(moved), self._place
+        )
 
-    def _rest(self) -> Answer:
-        """Solve the contacts as they were built, from rest."""
+    def hold(self, sweeps: int) -> Array:  # noqa: ARG002 - the protocol's
+        """Solve the contacts as they were built, from rest; the blocks stay.
+
+        Returns
+        -------
+        (blocks, 6) float
+        """
         found = solve(at_rest(self.bodies), None)
         self._begin(found.forces)
-        return found
+        self._residual = max(self._residual, found.residual)
+        rates = found.x.reshape(-1, 6) / self.bodies.root
+        rates[:, 3:] = np.einsum("bij,bj->bi", self._place.turns[:-1], rates[:, 3:])
+        return rates
+
+    def advance(self, steps: int) -> None:
+        """Let the blocks move."""
+        for _ in range(steps):
+            self._move(self._step)
+            self._balance.look(self._place, self._velocities, self._velocities)
+
+    def poses(self) -> Array:
+        """Return centres and rotation vectors, (blocks, 6)."""
+        return self.bodies.poses(self._place)
+
+    def quality(self) -> Quality:
+        """Tell how well contact and friction have been kept so far."""
+        return Quality(
+            residual=self._residual if math.isfinite(self._residual) else math.inf,
+            penetration=self._penetration,
+            gain=self._balance.gain,
+        )
 
     def _begin(self, forces: Array) -> None:
         """Begin a motion with the forces at the points of joints, (points, 3)."""
@@ -91,7 +129,7 @@ class Stepping:
         pushes = np.einsum("pi,pij->pj", forces, contacts.axes[contacts.joint])
         after = np.array([sides_of(each)[1] for each in assembly.joints])[contacts.joint]
         body = body_of(self.bodies.hulls)
-        self._keys, self._forces = points.keys, np.zeros((len(points.keys), 3))
+        self._keys, self._last = points.keys, np.zeros((len(points.keys), 2, 3))
         sides = np.stack([body[points.before], body[points.after]], axis=1)
         for at in range(len(points.keys)):
             near = np.linalg.norm(places - points.places[at], axis=1) < SAME
@@ -100,7 +138,7 @@ class Stepping:
                 joint = assembly.joints[int(contacts.joint[each])]
                 if set(sides_of(joint)) == set(sides[at].tolist()):
                     sign = 1.0 if after[each] == sides[at, 1] else -1.0
-                    self._forces[at] = sign * axes[at] @ pushes[each]
+                    self._last[at, 0] = sign * axes[at] @ pushes[each]
 
     def _move(self, step: float) -> None:
         """Go on for a time."""
@@ -132,16 +170,17 @@ class Stepping:
         gone = self._place.moved(step * velocities + step / 2 * gain)
         first, last = (self._seen(points, middle, there) for there in (self._place, gone))
         now = self._seen(points, middle, middle)
-        scaled = self.bodies.root * velocities.ravel()
-        rate = (first.rows @ scaled).reshape(-1, 3)[:, 0]
-        pressed = self._held(points)[:, 0] > 0
+        root = self.bodies.root
+        scaled = root * velocities
+        rate = first.along(scaled)[:, 0]
+        pressed = self._held(points)[:, 0, 0] > 0
         shut = ((np.abs(rate) <= SLOWLY) & (first.gaps <= SHUT)) | (
             pressed & (first.gaps <= PRESSED)
         )
-        at_end = scaled + self.bodies.root * gain.ravel()
-        drift = now.rows @ scaled + (last.rows - now.rows) @ at_end
-        drift[0::3] += np.maximum(first.gaps, 0.0) / step
-        self._solve(points, friction, now.rows, drift / step, shut, middle, step)
+        at_end = scaled + root * gain
+        drift = now.along(scaled) + last.along(at_end) - now.along(at_end)
+        drift[:, 0] += np.maximum(first.gaps, 0.0) / step
+        self._solve(points, friction, now, drift / step, shut, middle, step)
         if self._residual > COARSE:
             return False
         self._advance(step, 0.5)
@@ -158,10 +197,10 @@ class Stepping:
         points, friction = self._points(middle, step)
         gaps = self._gaps(points, middle, self._place)
         now = self._seen(points, middle, middle)
-        drift = now.rows @ (self.bodies.root * velocities.ravel())
-        drift[0::3] += np.maximum(gaps, 0.0) / step
+        drift = now.along(self.bodies.root * velocities)
+        drift[:, 0] += np.maximum(gaps, 0.0) / step
         every = np.ones(len(points.gaps), dtype=bool)
-        self._solve(points, friction, now.rows, drift / step, every, middle, step)
+        self._solve(points, friction, now, drift / step, every, middle, step, paths=True)
         if math.isfinite(self._residual):
             self._advance(step, 1.0)
 
@@ -175,32 +214,33 @@ class Stepping:
         self,
         points: Points,
         friction: Array,
-        rows: Any,
+        now: Seen,
         drift: Array,
         taken: NDArray[np.bool_],
         middle: Place,
         step: float,
+        *,
+        paths: bool = False,
     ) -> None:
         """Solve a step's contacts, of points that are taken; what is found is kept."""
         bodies = self.bodies
         turning = bodies.turning(self._velocities + step / 2 * self._speeding)
-        free = (bodies.pull(middle) + turning).ravel() / bodies.root
         at = np.flatnonzero(taken)
-        which = rows_of(at)
-        asked = Step(rows[which], drift[which], free, friction[at])
-        held = self._held(points)
-        found = solve(asked, held[at])
-        self._forces = np.zeros((len(points.gaps), 3))
-        self._forces[at] = found.forces
+        asked = bodies.asked(
+            now.rows[at], now.sides[at], drift[at], bodies.pull(middle) + turning, friction[at]
+        )
+        found = solve(asked, self._held(points)[at], paths=paths)
+        self._last = np.zeros((len(points.gaps), 2, 3))
+        self._last[at] = np.stack([found.forces, asked.velocities(found.x)], axis=1)
         self._keys = points.keys
         self._residual = float(np.maximum(self._residual, found.residual))
-        self._speeding = (found.x / bodies.root).reshape(-1, 6)
+        self._speeding = found.x.reshape(-1, 6) / bodies.root
 
     def _held(self, points: Points) -> Array:
-        """Return the forces of the last step at these points, 0 at new ones."""
-        found = np.zeros((len(points.gaps), 3))
+        """Return forces and velocities of the last step at these points, 0 at new ones."""
+        found = np.zeros((len(points.gaps), 2, 3))
         _, was, now = np.intersect1d(self._keys, points.keys, return_indices=True)
-        found[now] = self._forces[was]
+        found[now] = self._last[was]
         return found
 
     def _points(self, place: Place, step: float) -> tuple[Points, Array]:
@@ -242,28 +282,10 @@ class Stepping:
     def _seen(self, points: Points, found: Place, there: Place) -> Seen:
         """Return rows and gaps of points elsewhere than where they were found."""
         owner = self.bodies.hulls.owner
-        before, after = owner[points.before], owner[points.after]
         axes, places = self._carried(points, found, there)
         gaps = self._gaps_of(points, found, there, axes[:, 0], places)
-        rows = list[NDArray[np.int64]]()
-        columns = list[NDArray[np.int64]]()
-        root = self.bodies.root.reshape(-1, 6)
-        values = list[Array]()
-        at = 3 * np.arange(len(gaps))[:, None] + np.arange(3)
-        for block, sign in ((before, -1.0), (after, 1.0)):
-            on = np.flatnonzero(block != SUPPORT)
-            own = block[on]
-            arms = places[on] - there.centres[own]
-            about = np.cross(arms[:, None], axes[on])
-            about = np.matmul(about, there.turns[own])
-            wrench = sign * np.concatenate([axes[on], about], axis=2) / root[own][:, None]
-            rows.append(np.broadcast_to(at[on][:, :, None], wrench.shape).ravel())
-            column = 6 * own[:, None, None] + np.arange(6)
-            columns.append(np.broadcast_to(column, wrench.shape).ravel())
-            values.append(wrench.ravel())
-        entries: Any = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-        matrix: Any = sparse.csr_matrix(entries, shape=(3 * len(gaps), root.size))
-        return Seen(matrix, gaps)
+        sides = np.stack([owner[points.before], owner[points.after]], axis=1)
+        return Seen(self.bodies.rows(axes, places, sides, there), sides, gaps)
 
     def _overlap(self) -> float:
         """Return how deep blocks are within each other."""
@@ -271,17 +293,18 @@ class Stepping:
         return -float(self._gaps(points, self._place, self._place).min(initial=0.0))
 
     def _push_apart(self) -> None:
-        """Move blocks that overlap apart, as little as contact and friction allow."""
+        """Move blocks that overlap apart, as little as contact allows."""
         points, friction = self._points(self._place, 0.0)
         seen = self._seen(points, self._place, self._place)
         deep = -float(seen.gaps.min(initial=0.0))
         if deep > DEEP:
-            drift = np.zeros(3 * len(seen.gaps))
-            drift[0::3] = seen.gaps / deep
-            free = np.zeros(self.bodies.root.size)
-            found = solve(Step(seen.rows, drift, free, friction), np.zeros((len(seen.gaps), 3)))
-            if found.residual <= UNSOLVED:
-                way = deep * (found.x / self.bodies.root).reshape(-1, 6)
+            drift = np.zeros((len(seen.gaps), 3))
+            drift[:, 0] = seen.gaps / deep
+            still = np.zeros_like(self._velocities)
+            asked = self.bodies.asked(seen.rows, seen.sides, drift, still, friction)
+            forces = dilating(asked)
+            if forces is not None:
+                way = deep * asked.pushed_by(forces).reshape(-1, 6) / self.bodies.root
                 self._place = self._place.moved(way)
                 deep = self._overlap()
         self._penetration = max(self._penetration, deep)
@@ -289,15 +312,13 @@ class Stepping:
 
 def at_rest(bodies: Bodies) -> Step:
     """Return what the contacts of blocks as they were built ask, from rest."""
-    contacts, built = JointPoints(bodies.problem), bodies.built
-    # From velocities in frames, scaled, to those in space.
-    turns = np.zeros((len(bodies.inertia), 6, 6))
-    turns[:, :3, :3] = np.eye(3)
-    turns[:, 3:, 3:] = built.turns[:-1]
-    frames_of = on_diagonal(turns / bodies.root.reshape(-1, 1, 6))
-    rows = sparse.csr_matrix(contacts.matrix.T @ frames_of)
-    free = bodies.pull(built).ravel() / bodies.root
-    return Step(rows, np.zeros(rows.shape[0]), free, np.minimum(contacts.friction, ROUGH))
+    contacts, assembly = JointPoints(bodies.problem), bodies.problem.assembly
+    places = np.concatenate([each.points for each in assembly.joints]) / assembly.size
+    axes, sides = contacts.axes[contacts.joint], assembly.sides.T[contacts.joint]
+    rows = bodies.rows(axes, places, sides, bodies.built)
+    friction = np.minimum(contacts.friction, ROUGH)
+    pull = bodies.pull(bodies.built)
+    return bodies.asked(rows, sides, np.zeros((len(places), 3)), pull, friction)
 
 
 def carried(places: Array, block: NDArray[np.int64], found: Place, there: Place) -> Array:

@@ -39,7 +39,13 @@ class Answer:
     rates: Array
 
 
-def most(matrix: Any, pull: Array, friction: Array, live: Array | None = None) -> Answer:
+def most(
+    matrix: Any,
+    pull: Array,
+    friction: Array,
+    live: Array | None = None,
+    lift: float = 0.0,
+) -> Answer:
     """Find forces within friction that balance, at the largest value of one unknown.
 
     Parameters
@@ -53,6 +59,8 @@ def most(matrix: Any, pull: Array, friction: Array, live: Array | None = None) -
     live : (rows,) float, optional
         Pulls times the unknown besides. Without, the unknown is what each point presses by
         more than friction needs, and at most 1.
+    lift : float
+        What each normal force adds to the unknown: rates then open every point by that much.
 
     Raises
     ------
@@ -71,7 +79,7 @@ def most(matrix: Any, pull: Array, friction: Array, live: Array | None = None) -
         right.append(np.ones(1))
         cones.append(("nonnegative", 1))
     cost = np.zeros(3 * points + 1)
-    cost[-1] = -1.0
+    cost[-1], cost[:-1:3] = -1.0, -lift
     programme = cost, sparse.vstack(blocks, format="csc"), np.concatenate(right), cones
     # Equations come in units of their own: the solver's scaling mostly does harm.
     found = _solved(programme, scaled=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, cast
 
 import numpy as np
@@ -12,8 +13,8 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.space.points import JointPoints
 from blocksim.limit.space.cones import Answer, most
 
-NEAR = (1e-8, 1e-7, 1e-6, 1e-5, 1e-6, 1e-7)
-"""Of the largest rate: openings below which points are held together, step by step."""
+LIFTS = (10, 100, 1000)
+"""By how much points are to open, over what the solver left over."""
 SOFT = 1e-14
 """Of the largest stiffness: what keeps equations solvable that say the same."""
 
@@ -21,7 +22,7 @@ SOFT = 1e-14
 class Contacts(JointPoints):
     """Points of joints whose forces a cone programme finds."""
 
-    def most(self, pull: Array, live: Array | None = None) -> Answer:
+    def most(self, pull: Array, live: Array | None = None, lift: float = 0.0) -> Answer:
         """Find the largest factor on `live`, or the most that all points can press by.
 
         Forces and equations are in units of the blocks beside them, so that blocks of any
@@ -30,7 +31,7 @@ class Contacts(JointPoints):
         each = np.repeat(self.own, 3)
         matrix = sparse.diags(1 / self.rows) @ self.matrix @ sparse.diags(each)
         scaled = None if live is None else live / self.rows
-        found = most(matrix, pull / self.rows, self.friction, scaled)
+        found = most(matrix, pull / self.rows, self.friction, scaled, lift)
         forces = found.forces * each if len(found.forces) else found.forces
         return Answer(forces, found.value, found.rates / self.rows)
 
@@ -62,53 +63,34 @@ class Contacts(JointPoints):
         mu = np.where(rough, 0.0, self.friction)
         return np.where(rough, np.minimum(each[:, 0], -slip), each[:, 0] - mu * slip)
 
-    def mended(self, rates: Array) -> Array:
-        """Return rates at which points that nearly stay together do so to rounding.
+    def opened(self, pull: Array, rates: Array) -> Iterator[Array]:
+        """Give rates that open each point by more than the solver leaves over, more and more.
 
-        Of points that slide the dilation is held to mu times the slip, of others all three
-        rates to 0: Newton's method on what the solver left over.
+        So no point closes by an error. There are none where blocks are wedged.
 
         Parameters
         ----------
+        pull : (6 blocks,) float
         rates : (6 blocks,) float
+            What the solver found without.
         """
+        left_over = float((-self.opening(rates) * self.own).max())
+        for times in LIFTS:
+            found = self.most(pull, lift=times * left_over).rates
+            yield found if np.isfinite(self.friction).all() else self._held(found)
+
+    def _held(self, rates: Array) -> Array:
+        """Keep points without a bound on friction from slipping."""
         scale = np.sqrt(self.rows)
-        matrix = sparse.csr_matrix(self.matrix.T @ sparse.diags(1 / scale))
-        best, least = rates, float(-self.opening(rates).min())
-        for nearness in NEAR:
-            each = (self.matrix.T @ best).reshape(-1, 3)
-            slip = np.hypot(each[:, 1], each[:, 2])
-            size = float(np.abs(each).max())
-            rough = np.isinf(self.friction)
-            opening = np.where(rough, each[:, 0], self.opening(best))
-            near = np.abs(opening) <= nearness * size
-            if not (near | rough).any():
-                continue
-            slides = near & (slip > nearness * size) & ~rough
-            still = np.flatnonzero(near & ~slides)
-            # Without a bound on friction nothing slips, not even what opens.
-            held = np.flatnonzero(rough & ~near)
-            at = np.flatnonzero(slides)
-            way = each[at, 1:] / slip[at, None] if len(at) else np.zeros((0, 2))
-            rows = sparse.vstack(
-                [
-                    matrix[3 * at]
-                    - sparse.diags(self.friction[at] * way[:, 0]) @ matrix[3 * at + 1]
-                    - sparse.diags(self.friction[at] * way[:, 1]) @ matrix[3 * at + 2],
-                    *(matrix[3 * still + axis] for axis in range(3)),
-                    *(matrix[3 * held + axis] for axis in (1, 2)),
-                ]
-            ).tocsc()
-            left = np.concatenate([self.opening(best)[at], *each[still].T, *each[held, 1:].T])
-            normal = rows.T @ rows
-            normal = normal + sparse.identity(normal.shape[0]) * (
-                SOFT * normal.diagonal().max()
-            )
-            step = solved(normal, -(rows.T @ left)) / scale
-            error = float(-self.opening(best + step).min())
-            if error < least:
-                best, least = best + step, error
-        return best
+        across = np.repeat(np.isinf(self.friction), 3)
+        across[::3] = False
+        rows = sparse.csr_matrix(self.matrix.T @ sparse.diags(1 / scale))[across]
+        normal = rows.T @ rows
+        soft = SOFT * normal.diagonal().max()
+        normal = normal + sparse.identity(normal.shape[0]) * soft
+        for _ in range(2):
+            rates = rates - solved(normal, rows.T @ (rows @ (scale * rates))) / scale
+        return rates
 
 
 def solved(matrix: Any, right: Array) -> Array:

@@ -13,7 +13,8 @@ from scipy import sparse
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, ObservedJoint
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.limit.space.cones import Answer
 from blocksim.limit.space.contacts import Contacts, solved
 
@@ -21,14 +22,6 @@ BALANCED = 1e-12
 """Of each block's own weight: forces and moments that may be left over."""
 FARTHEST = 1e5
 """Times all weight: forces up to which those that would balance are ruled out."""
-STATES: dict[tuple[bool | None, bool], JointState] = {
-    (None, False): JointState.OPEN,
-    (False, False): JointState.HINGE_INTRADOS,
-    (False, True): JointState.HINGE_AND_SLIDES,
-    (True, False): JointState.CLOSED,
-    (True, True): JointState.SLIDES,
-}
-"""What a joint does, by whether all its points stay together, and whether one slides."""
 SEEN = 1e-5
 """Of the largest way: rates from which on a joint is told to open or to slide."""
 ROUNDED = 1e-14
@@ -67,11 +60,17 @@ class SpatialEquilibrium:
     def _held(self) -> tuple[Array, float]:
         """Forces and what they leave over, or rates and how far they rule forces out."""
         contacts = self._contacts
-        pull = contacts.problem.pull().ravel()
+        pull = contacts.problem.applied_forces().ravel()
         if self._presses:
             return _balanced(contacts, pull, self._found.forces)
-        rates = contacts.mended(self._found.rates)
-        return rates, _ruled_out(contacts, pull, rates)
+        rates = self._found.rates
+        gap = _ruled_out(contacts, pull, rates)
+        opened = contacts.opened(pull, rates)
+        while gap * FARTHEST >= 1 and (other := next(opened, None)) is not None:
+            found = _ruled_out(contacts, pull, other)
+            if found < gap:
+                rates, gap = other, found
+        return rates, gap
 
     @property
     def _presses(self) -> bool:
@@ -136,12 +135,8 @@ class SpatialCollapse:
     mechanism: Array | None = None
 
 
-def can_rest(problem: SpatialProblem) -> SpatialEquilibrium:
-    """Tell whether forces of equilibrium exist.
-
-    Parameters
-    ----------
-    problem : SpatialProblem
+def can_rest(problem: Problem[SpatialAssembly]) -> SpatialEquilibrium:
+    """Do in space what `limit.equilibrium` does.
 
     Raises
     ------
@@ -149,15 +144,11 @@ def can_rest(problem: SpatialProblem) -> SpatialEquilibrium:
         If the solver gives up.
     """
     contacts = Contacts(problem)
-    return SpatialEquilibrium(contacts, contacts.most(problem.pull().ravel()))
+    return SpatialEquilibrium(contacts, contacts.most(problem.applied_forces().ravel()))
 
 
-def largest_load(problem: SpatialProblem) -> SpatialCollapse:
-    """Find the largest factor on the live loads at which forces of equilibrium exist.
-
-    Parameters
-    ----------
-    problem : SpatialProblem
+def largest_load(problem: Problem[SpatialAssembly]) -> SpatialCollapse:
+    """Do in space what `limit.collapse` does.
 
     Raises
     ------
@@ -165,7 +156,7 @@ def largest_load(problem: SpatialProblem) -> SpatialCollapse:
         If the solver gives up.
     """
     contacts = Contacts(problem)
-    pull, live = problem.scaled(problem.fixed_pull).ravel(), contacts.live
+    pull, live = problem.with_load(0.0).applied_forces().ravel(), contacts.live
     # In units of its own size, as loads may be of any.
     unit = float(np.abs(live / contacts.rows).max()) or 1.0
     found = contacts.most(pull, live / unit)
@@ -221,7 +212,7 @@ def _ruled_out(contacts: Contacts, pull: Array, rates: Array) -> float:
     return error * float(blocks.sum()) / gained
 
 
-def unit_rates(problem: SpatialProblem, rates: Array) -> Array:
+def unit_rates(problem: Problem[SpatialAssembly], rates: Array) -> Array:
     """Scale rates so that the largest way of a corner is 1 [size], (blocks, 6)."""
     assembly, each = problem.assembly, rates.reshape(-1, 6)
     largest = 0.0
@@ -232,7 +223,9 @@ def unit_rates(problem: SpatialProblem, rates: Array) -> Array:
     return each / largest if largest > 0 else each
 
 
-def observed_joints(problem: SpatialProblem, rates: Array) -> tuple[ObservedJoint, ...]:
+def observed_joints(
+    problem: Problem[SpatialAssembly], rates: Array
+) -> tuple[ObservedJoint, ...]:
     """Tell what each joint does in a motion of the blocks.
 
     Of a hinge some points stay together and others part, or all but one edge does. Sliding
@@ -240,7 +233,7 @@ def observed_joints(problem: SpatialProblem, rates: Array) -> tuple[ObservedJoin
 
     Parameters
     ----------
-    problem : SpatialProblem
+    problem : Problem[SpatialAssembly]
     rates : (blocks, 6) float
         The largest way of a corner 1.
     """
@@ -257,5 +250,6 @@ def observed_joints(problem: SpatialProblem, rates: Array) -> tuple[ObservedJoin
 
 def state_of(together: NDArray[np.bool_], slides: NDArray[np.bool_]) -> JointState:
     """Tell what a joint does by which of its points stay together, and which slide."""
-    some_or_all = bool(together.all()) if together.any() else None
-    return STATES[some_or_all, bool(slides.any())]
+    return JointState.of(
+        inner=not together.any(), outer=not together.all(), slides=bool(slides.any())
+    )

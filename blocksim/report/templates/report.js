@@ -57,7 +57,9 @@ for (const figure of document.querySelectorAll(".motion")) {
     }
     button.textContent = "Stop";
     const from = slider.value < 1 ? Number(slider.value) : 0;
+    started = 0;
     requestAnimationFrame((now) => {
+      if (started === null) return; // Stopped before the first picture.
       started = now - from * 1000 * SECONDS;
       step(now);
     });

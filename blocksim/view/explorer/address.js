@@ -9,6 +9,9 @@ const address = (() => {
 
   const textOf = (state) =>
     new URLSearchParams({
+      ...(state.at === null ? {} : { at: +state.at.toPrecision(3) }),
+      ...(state.lesson ? { lesson: state.lesson } : {}),
+      ...(state.embed ? { embed: "yes" } : {}),
       alpha: plain(state.halfAngle / DEGREE), mu: plain(state.mu), eta: plain(state.eta),
       n: state.voussoirs, arch: state.asBuilt ? "built" : "continuous", weight: state.weight, view: state.view,
     }).toString();
@@ -24,6 +27,9 @@ const address = (() => {
     take("alpha", "halfAngle", Number(said.get("alpha")));
     if (change.halfAngle !== undefined) change.halfAngle *= DEGREE;
     take("eta", "eta", Number(said.get("eta")));
+    take("at", "at", Number(said.get("at")));
+    take("lesson", "lesson", Math.round(Number(said.get("lesson"))));
+    change.embed = said.get("embed") === "yes";
     take("n", "voussoirs", Math.round(Number(said.get("n"))));
     if (said.get("mu") === "inf") change.mu = Infinity;
     else take("mu", "mu", Number(said.get("mu")));
@@ -38,7 +44,8 @@ const address = (() => {
   function writeNow(state) {
     clearTimeout(waiting);
     waiting = null;
-    history.replaceState(null, "", `#${textOf(state)}`);
+    // The view of any blocks has an address of its own.
+    if (!location.hash.includes("blocks=")) history.replaceState(null, "", `#${textOf(state)}`);
   }
 
   /** Write the state into the address soon. */
@@ -46,5 +53,5 @@ const address = (() => {
     waiting ??= setTimeout(() => writeNow(state), PAUSE);
   }
 
-  return { read, write, flush: (state) => waiting !== null && writeNow(state) };
+  return { read, write, textOf, flush: (state) => waiting !== null && writeNow(state) };
 })();

@@ -139,5 +139,22 @@ const archPicture = (() => {
     add(lines, "path", { d: shown((a) => theory.thrustLine(a, thrust, crownMoment, eta, level)), class: "thrust" });
   }
 
-  return { draw };
+  /** An arch of n voussoirs with straight faces as any blocks, between fixed abutments. */
+  function blocks({ halfAngle, eta }, voussoirs) {
+    const [inner, outer] = [1 - eta / 2, 1 + eta / 2];
+    const place = (angle, radius, beyond = 0) =>
+      [radius * Math.sin(angle) + beyond * Math.cos(angle), radius * Math.cos(angle) - beyond * Math.sin(angle)];
+    const faces = Array.from({ length: voussoirs + 1 }, (_, i) => {
+      const angle = halfAngle * ((2 * i) / voussoirs - 1);
+      return [place(angle, inner), place(angle, outer)];
+    });
+    const stones = faces.slice(1).map((face, i) => [face[0], face[1], faces[i][1], faces[i][0]]);
+    const abutments = [-1, 1].map((side) => {
+      const [near, far] = [0, side * SPRINGING].map((beyond) => [inner, outer].map((radius) => place(side * halfAngle, radius, beyond)));
+      return side > 0 ? [far[0], far[1], near[1], near[0]] : [near[0], near[1], far[1], far[0]];
+    });
+    return [...stones.map((corners) => ({ corners, fixed: false })), ...abutments.map((corners) => ({ corners, fixed: true }))];
+  }
+
+  return { draw, blocks };
 })();

@@ -99,5 +99,5 @@ const exporting = (() => {
     return hand(paper.toDataURL("image/png"), `${name}.png`);
   }
 
-  return { save };
+  return { save, hand };
 })();

@@ -13,13 +13,14 @@
   const TALLEST = 560, LOW = 520; // of the map, and a window called low [pixels]
   const PHONE = 600; // widest window that is a phone's [pixels]
   const STRIDES = 200; // of an arrow key across the map
+  const FEW = 60; // most voussoirs of the slider; beyond is the continuous arch
   const CLOSER = 1.6; // times the map is larger after a click on +
   const NEAR = 12; // pixels within which a result is meant
-  const RANGES = { alpha: [1, 178], mu: [0.001, 1000], eta: [1e-6, 2], voussoirs: [3, 10000] }; // of arches
+  const RANGES = { alpha: [1, 178], mu: [0.001, 1000], eta: [1e-6, 2], voussoirs: [3, 10000], at: [0, 1], lesson: [1, lesson.count] }; // of arches
   const ON_MAP = { mu: [0.01, data.largestMu], eta: [1e-4, 2] };
 
   const find = (id) => document.getElementById(id);
-  const FIRST = { halfAngle: null, mu: 1.2, eta: 0.3, weight: "centreline", voussoirs: 27, asBuilt: false, view: "whole" };
+  const FIRST = { halfAngle: null, mu: 1.2, eta: 0.3, weight: "centreline", voussoirs: 27, asBuilt: false, view: "whole", at: null, lesson: 0, embed: false };
   const state = { ...FIRST };
   let lastFriction = data.largestMu; // that was not infinite
   let frame, layer, drawn, seen, setPose;
@@ -87,6 +88,12 @@
     setPose = archPicture.draw(find("arch"), { state, ...seen, amount, reach });
     setPose(moved);
     find("play").disabled = !moves;
+    showScrubber();
+    find("code").value = `<iframe src="${location.href.split("#")[0]}#${address.textOf({ ...state, lesson: 0, embed: true })}" ` +
+      `width="900" height="640" title="Does the arch stand?"></iframe>`;
+    document.body.classList.toggle("embedded", state.embed);
+    document.body.classList.toggle("learning", state.lesson > 0);
+    lesson.show(find("lesson"), state.lesson, look, learn);
     find("arch").setAttribute("aria-label", `${parameters()}. ${words.headline(state, seen)}. ${words.ofJoints(state, seen)}`);
   }
 
@@ -134,6 +141,8 @@
     }
     find("unbounded").checked = state.mu === Infinity;
     find(state.asBuilt ? "built" : "continuous").checked = true;
+    find("stones").value = state.asBuilt ? state.voussoirs : FEW + 1;
+    find("stones").setAttribute("aria-valuetext", words.which(seen.voussoirs));
     if (document.activeElement !== find("voussoirs")) find("voussoirs").value = state.voussoirs;
     const named = state.view in mapPicture.VIEWS;
     find("view").value = named ? state.view : "part";
@@ -198,15 +207,50 @@
       const back = Math.max(0, time - FALLING - RESTING) / RETURNING;
       moved = back > 0 ? (1 - back) ** 2 : Math.min(1, time / FALLING) ** 2;
       setPose(moved);
+      showScrubber();
     }
     if (playing) requestAnimationFrame(step);
   }
 
   function setPlaying(value) {
     playing = value;
+    state.at = playing || still.matches ? null : moved;
     started = null;
     find("play").textContent = playing ? "Pause" : "Play";
     if (playing) requestAnimationFrame(step);
+  }
+
+  /** Where the slider stands: to the middle the arch gets thinner, down to its least thickness; beyond, it falls. */
+  function showScrubber() {
+    const { eta } = seen.critical;
+    const spare = eta ? within([0, 1], state.eta / eta - 1) : 0;
+    const slider = find("scrub");
+    slider.value = amount > 0 ? 0.5 + moved / 2 : 0.5 - spare / 2;
+    slider.disabled = eta === 0 || (eta === null && !amount);
+    slider.setAttribute("aria-valuetext", amount > 0 ? `falls, ${Math.round(100 * moved)} % of the way` : `${Math.round(100 * spare)} % thicker than needed`);
+  }
+
+  function scrub(value) {
+    const { eta } = seen.critical;
+    moved = Math.max(0, 2 * value - 1);
+    setPlaying(false);
+    const least = eta === null ? state.eta : eta;
+    update({ at: moved, eta: value < 0.5 ? Math.min(2, least * (2 - 2 * value)) : Math.min(state.eta, least) });
+  }
+
+  /* The lesson. */
+
+  /** Look at an arch of the lesson; "least" is its least thickness. */
+  function look(arch) {
+    const eta = arch.eta === "least" ? theory.leastThickness(arch.halfAngle, arch.mu, arch.weight).eta : arch.eta;
+    moved = arch.at ?? (still.matches ? 1 : 0);
+    setPlaying(arch.at === undefined && !still.matches);
+    update({ ...arch, eta, at: arch.at ?? null });
+  }
+
+  function learn(step) {
+    update({ lesson: step });
+    if (step) look(lesson.shown(step));
   }
 
   /* Choosing it. */
@@ -414,6 +458,12 @@
     voussoirs.title = `a whole number from ${voussoirs.min} to ${voussoirs.max}`;
     voussoirs.addEventListener("input", () => voussoirs.validity.valid && voussoirs.value && update({ voussoirs: voussoirs.valueAsNumber, asBuilt: true }));
     voussoirs.addEventListener("blur", () => update({}));
+    find("stones").addEventListener("input", (event) => {
+      const voussoirs = +event.target.value;
+      update(voussoirs > FEW ? { asBuilt: false } : { voussoirs, asBuilt: true });
+    });
+    for (const leaving of ["to-own", "carry"]) find(leaving).addEventListener("click", () => address.flush(state));
+    find("carry").addEventListener("click", () => own.open(archPicture.blocks(state, Math.min(FEW, state.asBuilt ? state.voussoirs : FEW)), state.mu));
     for (const name of ["continuous", "built"]) {
       find(name).addEventListener("change", () => update({ asBuilt: name === "built" }));
     }
@@ -441,7 +491,13 @@
       button.addEventListener("click", () =>
         exporting.save(find(picture), [words.headline(state, seen), parameters()], picture, button.dataset.kind));
     }
-    find("play").addEventListener("click", () => setPlaying(!playing));
+    find("scrub").addEventListener("input", (event) => scrub(+event.target.value));
+    find("learn").addEventListener("click", () => learn(1));
+    find("code").addEventListener("focus", (event) => event.target.select());
+    find("play").addEventListener("click", () => {
+      setPlaying(!playing);
+      address.write(state);
+    });
     still.addEventListener("change", () => {
       moved = 1;
       setPlaying(!still.matches);
@@ -463,6 +519,7 @@
     Object.assign(state, FIRST, address.read(location.hash, RANGES, mapPicture.boxOf));
     state.halfAngle ??= theory.atPoint(state.eta, state.mu, state.weight).halfAngle;
     if (state.mu < Infinity) lastFriction = state.mu;
+    if (state.at !== null) [moved, playing] = [state.at, false];
   }
 
   arrive();
@@ -483,9 +540,11 @@
     drawMap();
     show();
   }).observe(find("map-box"));
-  addEventListener("hashchange", () => {
+  addEventListener("hashchange", (event) => {
+    if (own.turn(event)) return;
     arrive();
     show();
   });
   addEventListener("pagehide", () => address.flush(state));
+  own.start();
 })();

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import asdict
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
 
 import blocksim
 from blocksim.arch.circular import Weight
@@ -17,12 +15,19 @@ from blocksim.arch.modes import Mode
 from blocksim.arch.theory import least_thicknesses
 from blocksim.arch.theory.critical import CROWN_ETA
 from blocksim.blocks.assembly import Array
-from blocksim.common.words import printed
-from blocksim.view.explorer.results import Result
+from blocksim.blocks.maker import Maker
+from blocksim.blocks.problem import Problem
+from blocksim.kinds.arcade import Arcade
+from blocksim.kinds.circular import CircularArch
+from blocksim.kinds.column import Column
+from blocksim.kinds.files import load_structure
+from blocksim.kinds.portal import Portal
+from blocksim.kinds.wall import Opening, Wall
 from blocksim.view.mapshapes import ISO_DEGREES, LARGEST_MU, iso_line, map_shapes
 from blocksim.view.style import (
     FRICTION,
     JOINTS,
+    LIVE,
     MECHANISM,
     MISS,
     MODES,
@@ -30,31 +35,31 @@ from blocksim.view.style import (
     UNNAMED,
     VERDICTS,
 )
+from blocksim.view.templates import environment_of
 
 HERE = Path(__file__).parent
 SCRIPTS = (
     "theory.js", "built.js", "mechanism.js", "svg.js", "map.js", "arch.js", "words.js",
-    "address.js", "export.js", "page.js",
+    "address.js", "export.js", "lesson.js", "programme.js", "blocks.js", "ownpicture.js",
+    "own.js", "page.js",
 )  # fmt: skip
+STRUCTURES: dict[str, Maker] = {
+    "portal": Portal(
+        arch=CircularArch(voussoirs=11, eta=0.2), pier_courses=2, pier_height=1.2, friction=0.6
+    ),
+    "arcade": Arcade(arch=CircularArch(voussoirs=9, eta=0.25), pier_height=1.0, friction=0.6),
+    "wall": Wall(
+        openings=(Opening(left=0.8, right=1.2, from_course=1, to_course=3),), friction=0.6
+    ),
+    "column": Column(drums=5, drum_height=0.6, width=1.0, friction=0.6),
+}
+SHIPPED = ("box2d_arch", "ferris_tinloi_3", "gable", "harmonic_5")
 LETTERS = {"T": (-10, -2), "S": (-11, -9), "J": (-7, 9), "B": (11, -11)}
 """Where the letter of each landmark stands, in pixels from it, up and to the right."""
 
 
-def explorer_page(results: Sequence[Result] = (), source: str = "") -> str:
-    """Build the page.
-
-    Parameters
-    ----------
-    results : sequence of Result
-        Simulated arches to show on the map.
-    source : str
-        Where they come from.
-
-    Returns
-    -------
-    str
-        HTML, complete in itself.
-    """
+def explorer_page(results: Sequence[Mapping[str, Any]] = (), source: str = "") -> str:
+    """Return the page as HTML, complete in itself, with results and their source."""
     return (
         environment_of("blocksim.view.explorer")
         .get_template("page.html")
@@ -68,21 +73,7 @@ def explorer_page(results: Sequence[Result] = (), source: str = "") -> str:
     )
 
 
-def environment_of(package: str) -> Environment:
-    """Return templates of a package, which escape what they are given."""
-    environment = Environment(
-        loader=PackageLoader(package, ""),
-        autoescape=True,
-        undefined=StrictUndefined,
-        finalize=printed,
-        trim_blocks=True,
-    )
-    # JSON has no infinity; modes keep the order of the paper.
-    environment.policies["json.dumps_kwargs"] = {"allow_nan": False}
-    return environment
-
-
-def _data(results: Sequence[Result]) -> dict[str, Any]:
+def _data(results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """Collect what the scripts are given: style, shapes of the maps, results."""
     return {
         "modes": {
@@ -95,23 +86,36 @@ def _data(results: Sequence[Result]) -> dict[str, Any]:
             "friction": FRICTION,
             "wrong": MISS,
             "mechanism": MECHANISM,
+            "load": LIVE,
             **{state.value: colour for state, colour in JOINTS.items()},
             **{verdict.value: colour for verdict, colour in VERDICTS.items()},
         },
         "largestMu": LARGEST_MU,
         "maps": {"centreline": _map("centreline"), "sector": _map("sector")},
-        "results": [asdict(result) for result in results],
+        "structures": [
+            *(_blocks(name, maker.problem()) for name, maker in STRUCTURES.items()),
+            *(_blocks(name, load_structure(name)) for name in SHIPPED),
+        ],
+        "results": list(results),
+    }
+
+
+def _blocks(name: str, problem: Problem) -> dict[str, Any]:
+    """Return a structure of convex blocks that weigh as much as their area."""
+    assembly = problem.assembly
+    supports = [polygon for support in assembly.supports for polygon in support.polygons]
+    return {
+        "name": name,
+        "mu": problem.mu if math.isfinite(problem.mu) else None,
+        "blocks": [
+            {"corners": corners.round(9).tolist(), "fixed": at >= len(assembly.blocks)}
+            for at, corners in enumerate([*(b.vertices for b in assembly.blocks), *supports])
+        ],
     }
 
 
 def _map(weight: Weight) -> dict[str, Any]:
     shapes = map_shapes(weight)
-    lines = {
-        "divide": shapes.divide,
-        "first": shapes.first,
-        "equal": shapes.equal,
-        "crown": shapes.crown,
-    }
     return {
         "regions": [
             {
@@ -123,7 +127,8 @@ def _map(weight: Weight) -> dict[str, Any]:
             for part in shapes.regions
         ],
         "lines": [
-            {"name": name, "points": _points(line.mu, line.eta)} for name, line in lines.items()
+            {"name": name, "points": _points(line.mu, line.eta)}
+            for name, line in shapes.lines.items()
         ],
         "iso": _iso_lines(weight),
         "overturning": CROWN_ETA[weight],

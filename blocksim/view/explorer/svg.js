@@ -12,7 +12,8 @@ const svg = (() => {
     return element;
   }
 
-  const pathOf = (points) => (points.length ? "M" : "") + points.map((p) => p.map((v) => +v.toFixed(2)).join(" ")).join("L");
+  const pathOf = (points, digits = 2) =>
+    (points.length ? "M" : "") + points.map((p) => p.map((v) => +v.toFixed(digits)).join(" ")).join("L");
 
   /* Shapes of points, so that colour never stands alone; of radius 1. */
   const regular = (corners, radius, turn) =>

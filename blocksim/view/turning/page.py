@@ -7,36 +7,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import blocksim
-from blocksim.blocks.joints import JointState
 from blocksim.common.words import counted, printable
-from blocksim.view.drawing import state_of_any, words_of
-from blocksim.view.explorer.page import environment_of
-from blocksim.view.gltfspace import mechanism_model
+from blocksim.view.models import mechanism_model
+from blocksim.view.solidscene import told
 from blocksim.view.style import INK, PAPER, QUIET, VERDICTS
+from blocksim.view.templates import environment_of
 
 if TYPE_CHECKING:
     from blocksim.ask.check import Check
-    from blocksim.blocks.space.problem import SpatialProblem
+    from blocksim.blocks.space.assembly import SpatialAssembly
 
 VIEWER = Path(__file__).parent / "model-viewer.min.js"
 """<model-viewer> as the registry of npm has it, @google/model-viewer."""
 VERSION = "4.4.0"
 
 
-def turning_page(answer: Check[SpatialProblem]) -> str:
-    """Build the page.
-
-    Parameters
-    ----------
-    answer : Check
-
-    Returns
-    -------
-    str
-        HTML, complete in itself.
-    """
+def turning_page(answer: Check[SpatialAssembly]) -> str:
+    """Return the page as HTML, complete in itself."""
     problem = answer.problem
-    states = {state_of_any(each.state) for each in answer.joints} - {JointState.CLOSED}
     return (
         environment_of("blocksim.view.turning")
         .get_template("page.html")
@@ -45,7 +33,7 @@ def turning_page(answer: Check[SpatialProblem]) -> str:
             verdict=f"{answer.verdict.value}, by {answer.method}",
             about=f"{counted(len(problem.assembly.blocks), 'block')}, mu {problem.mu:g}",
             model=base64.b64encode(mechanism_model(answer)).decode(),
-            told=[words_of(each, is_arch=False) for each in sorted(states)],
+            told=told(each.state for each in answer.joints),
             moves=answer.mechanism is not None,
             tone=VERDICTS[answer.verdict],
             paper=PAPER,

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 from blocksim import __version__, check
-from blocksim.kinds.files import load_any
+from blocksim.kinds.files import load_structure
 
 SAYS = {"stands": "stands", "collapses": "falls", "undecided": "open"}
 
@@ -26,7 +26,7 @@ def main(folder, out, method):
             if scene["question"] != "stands":
                 continue
             started = time.perf_counter()
-            said = SAYS[check(load_any(path), method=method).verdict.value]
+            said = SAYS[check(load_structure(path), method=method).verdict.value]
             line = {"scene": scene["name"], "verdict": said}
             line["seconds"] = round(time.perf_counter() - started, 4)
             print(json.dumps(line), file=file, flush=True)

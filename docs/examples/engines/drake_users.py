@@ -1,8 +1,5 @@
 """Drake, as its users run it. Set up: `pip install drake==1.51.0`."""
 
-import tempfile
-from pathlib import Path
-
 import numpy as np
 import pydrake.all as drake
 from files import angle, main, prism
@@ -18,67 +15,50 @@ class Engine:
     }
 
     def __init__(self, scene, settings):
-        self.scene, self.settings = scene, settings
+        self.scene, self.step_s = scene, settings["step"]
         self.builder = drake.DiagramBuilder()
-        self.plant, _ = drake.AddMultibodyPlantSceneGraph(self.builder, settings["step"])
+        self.plant, _ = drake.AddMultibodyPlantSceneGraph(self.builder, self.step_s)
         if "sap" in settings:
-            self.plant.set_discrete_contact_approximation(
-                drake.DiscreteContactApproximation.kSap
-            )
+            sap = drake.DiscreteContactApproximation.kSap
+            self.plant.set_discrete_contact_approximation(sap)
             self.plant.set_penetration_allowance(1e-5)
-        self.plant.mutable_gravity_field().set_gravity_vector([*scene["gravity"], 0.0][:3])
-        self.folder, self.starts, self.count = tempfile.TemporaryDirectory(), {}, 0
-        self.simulator = None
+        self.plant.mutable_gravity_field().set_gravity_vector(spatial(scene["gravity"]))
+        self.given, self.forces, self.simulator = [], [], None
 
     def add(self, given):
         """Add a body; frictions are combined so that equal ones stay."""
-        mu = self.scene["friction"]
-        friction, moving = drake.CoulombFriction(mu, mu), not given["fixed"]
-        if moving:
-            about = given["inertia"]
-            inertia = np.diag([about] * 3) if isinstance(about, float) else np.array(about)
-            unit = drake.UnitInertia(*(np.diag(inertia) / given["mass"]))
-            body = self.plant.AddRigidBody(
-                given["name"], drake.SpatialInertia(given["mass"], [0, 0, 0], unit)
-            )
-            spin = given["spin"] if isinstance(given["spin"], list) else [0, 0, given["spin"]]
-            self.starts[given["name"]] = (
-                [*given["centre"], 0.0][:3],
-                spin,
-                [*given["velocity"], 0.0][:3],
-            )
-        else:
-            body = self.plant.world_body()
-        for shape in given.get("polygons") or given["polyhedra"]:
-            self.count += 1
-            path = Path(self.folder.name) / f"{self.count}.obj"
-            path.write_text(obj(prism(given, shape)))
-            self.plant.RegisterCollisionGeometry(
-                body,
-                drake.RigidTransform(),
-                drake.Convex(str(path)),
-                f"shape {self.count}",
-                friction,
-            )
-        return given["name"]
+        mu, name, body = self.scene["friction"], given["name"], self.plant.world_body()
+        if not given["fixed"]:
+            about = np.array(given["inertia"])
+            moments = np.diag(about) if about.ndim else np.full(3, about)
+            unit = drake.UnitInertia(*(moments / given["mass"]))
+            inertia = drake.SpatialInertia(given["mass"], [0, 0, 0], unit)
+            body = self.plant.AddRigidBody(name, inertia)
+            self.given.append(given)
+        place, friction = drake.RigidTransform(), drake.CoulombFriction(mu, mu)
+        for at, shape in enumerate(given.get("polygons") or given["polyhedra"]):
+            hull = drake.Convex(points=np.transpose(prism(given, shape)), label=name)
+            own = f"{name} {at}"
+            self.plant.RegisterCollisionGeometry(body, place, hull, own, friction)
+        return name
 
     def _ready(self):
         if self.simulator is not None:
             return
         self.plant.Finalize()
-        self.pushes = self.builder.ExportInput(
-            self.plant.get_applied_spatial_force_input_port()
-        )
+        port = self.plant.get_applied_spatial_force_input_port()
+        self.pushes = self.builder.ExportInput(port)
         self.diagram = self.builder.Build()
         self.simulator = drake.Simulator(self.diagram)
-        context = self.simulator.get_mutable_context()
-        self.inside, self.forces = self.plant.GetMyMutableContextFromRoot(context), []
-        for name, (place, spin, speed) in self.starts.items():
-            body = self.plant.GetBodyByName(name)
-            self.plant.SetFreeBodyPose(self.inside, body, drake.RigidTransform(place))
-            self.plant.SetFreeBodySpatialVelocity(
-                self.inside, body, drake.SpatialVelocity(spin, speed)
-            )
+        self.context = self.simulator.get_mutable_context()
+        self.inside = self.plant.GetMyMutableContextFromRoot(self.context)
+        for given in self.given:
+            body = self.plant.GetBodyByName(given["name"])
+            place = drake.RigidTransform(spatial(given["centre"]))
+            self.plant.SetFreeBodyPose(self.inside, body, place)
+            spin = given["spin"] if self.scene["dimensions"] == 3 else [0, 0, given["spin"]]
+            speed = drake.SpatialVelocity(spin, spatial(given["velocity"]))
+            self.plant.SetFreeBodySpatialVelocity(self.inside, body, speed)
         self.simulator.Initialize()
 
     def push(self, name, force, lever):
@@ -86,18 +66,17 @@ class Engine:
         self._ready()
         said = drake.ExternallyAppliedSpatialForce()
         said.body_index = self.plant.GetBodyByName(name).index()
-        said.p_BoBq_B = np.array([*lever, 0.0][:3])
-        said.F_Bq_W = drake.SpatialForce(np.zeros(3), np.array([*force, 0.0][:3]))
+        said.p_BoBq_B = np.array(spatial(lever))
+        said.F_Bq_W = drake.SpatialForce(np.zeros(3), np.array(spatial(force)))
         self.forces.append(said)
 
     def step(self):
         """Go on by one step."""
         self._ready()
-        context = self.simulator.get_mutable_context()
         if self.forces:
-            self.diagram.get_input_port(self.pushes).FixValue(context, self.forces)
+            self.diagram.get_input_port(self.pushes).FixValue(self.context, self.forces)
             self.forces = []
-        self.simulator.AdvanceTo(context.get_time() + self.settings["step"])
+        self.simulator.AdvanceTo(self.context.get_time() + self.step_s)
 
     def pose(self, name, late):
         """Return x, y and angle, or x, y, z and quaternion."""
@@ -105,19 +84,16 @@ class Engine:
         body = self.plant.GetBodyByName(name)
         pose = self.plant.EvalBodyPoseInWorld(self.inside, body)
         speed = self.plant.EvalBodySpatialVelocityInWorld(self.inside, body)
-        place, turn = (
-            pose.translation() + late * speed.translational(),
-            pose.rotation().ToQuaternion().wxyz(),
-        )
+        place = (pose.translation() + late * speed.translational()).tolist()
+        turn = pose.rotation().ToQuaternion().wxyz().tolist()
         if self.scene["dimensions"] == 3:
-            return [*place.tolist(), *turn.tolist()]
-        return [*place[:2].tolist(), angle(turn.tolist()) + late * float(speed.rotational()[2])]
+            return [*place, *turn]
+        return [*place[:2], angle(turn) + late * float(speed.rotational()[2])]
 
 
-def obj(corners):
-    """Return corners as a file of a mesh; Drake takes their hull, whatever the faces."""
-    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in corners]
-    return "\n".join([*lines, *(f"f 1 {at} {at + 1}" for at in range(2, len(corners)))])
+def spatial(vector):
+    """Return a vector of the plane, or in space, as one in space."""
+    return [*vector, 0.0][:3]
 
 
 if __name__ == "__main__":

@@ -33,8 +33,7 @@ class Engine:
         if not given["fixed"]:
             body.explicitinertial, body.mass, body.ipos = True, given["mass"], [0, 0, 0]
             if planar:
-                about = given["inertia"]
-                body.inertia = [about, about, about]
+                body.inertia = [given["inertia"]] * 3
                 for axis, kind in ((0, "SLIDE"), (1, "SLIDE"), (2, "HINGE")):
                     joint = body.add_joint(
                         name=f"{name} {axis}", type=getattr(mujoco.mjtJoint, f"mjJNT_{kind}")
@@ -42,10 +41,8 @@ class Engine:
                     joint.axis = [float(axis == each) for each in range(3)]
                 self.speeds[name] = [*given["velocity"], given["spin"]]
             else:
-                body.fullinertia = [
-                    given["inertia"][i][j]
-                    for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-                ]
+                (a, b, c), (_, d, e), (_, _, f) = given["inertia"]
+                body.fullinertia = [a, d, f, b, c, e]
                 body.add_freejoint(name=f"{name} 0")
                 self.speeds[name] = [*given["velocity"], *given["spin"]]
         for part, shape in enumerate(given.get("polygons") or given["polyhedra"]):
@@ -91,13 +88,10 @@ class Engine:
         if self.scene["dimensions"] == 3:
             return [*body.xpos.tolist(), *body.xquat.tolist()]
         at = self.model.joint(f"{name} 0").dofadr[0]
-        u, v, spin = self.data.qvel[at : at + 3]
+        speed = self.data.qvel[at : at + 3]
         turn = float(self.data.qpos[self.model.joint(f"{name} 2").qposadr[0]])
-        return [
-            float(body.xpos[0] + u * late),
-            float(body.xpos[1] + v * late),
-            turn + float(spin * late),
-        ]
+        x, y = body.xpos[:2] + late * speed[:2]
+        return [float(x), float(y), turn + late * float(speed[2])]
 
 
 if __name__ == "__main__":

@@ -9,13 +9,14 @@ main({
   dimensions: [2],
   settings: {
     documented: ["its defaults: 1/60 s, 4 solver iterations", { step: 1 / 60 }],
-    best: ["1/960 s, 50 solver iterations", { step: 1 / 960, sweeps: 50 }],
+    best: ["1/240 s, 20 solver iterations, contact frequency 240 Hz", { step: 1 / 240, sweeps: 20, hertz: 240 }],
   },
   world(scene, settings) {
     const vector = ([x, y]) => ({ x, y });
     const world = new RAPIER.World(vector(scene.gravity));
     world.timestep = settings.step;
     if (settings.sweeps) world.numSolverIterations = settings.sweeps;
+    if (settings.hertz) world.integrationParameters.contact_natural_frequency = settings.hertz;
     return {
       // Frictions: their mean.
       add(given) {

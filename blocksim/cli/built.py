@@ -1,0 +1,178 @@
+"""The options that say what is built, each declared once."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from typing import Annotated, ClassVar
+
+from blocksim.arch.dimensions import LINES, friction_of
+from blocksim.cli.arguments import Option
+from blocksim.common.checks import FRICTION_ANGLE, LEAN_DEG, RATIO, require
+
+OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters", "tolerance", "depth",
+          "unit", "layer", "snap"}  # fmt: skip
+"""Options that say how anything is built, not only an arch."""
+PARAMETERS = {"alpha": "half_angle_deg"}
+"""Options that are not called as the parameter that they give."""
+LARGEST_FRICTION = 10.0
+"""Coefficient above which, up to 90, one is taken for an angle."""
+
+Mu = Annotated[float | None, Option(about="Friction coefficient, above 0; inf allowed.")]
+Depth = Annotated[
+    float | None,
+    Option(about="Depth out of the plane in m; 1 if left out."),
+]
+Tolerance = Annotated[
+    float | None,
+    Option(
+        about="Mortar joints, gaps and overlaps of a drawing up to this are closed, in m; "
+        "what rounding of its coordinates explains if left out."
+    ),
+]
+Unit = Annotated[
+    str | None,
+    Option(
+        about="Of a drawing that has none: m, mm, cm, dm, in, ft, or metres that a unit is."
+    ),
+]
+Layer = Annotated[
+    list[str] | None,
+    Option(
+        metavar="ROLE=NAME",
+        about="Layer of a drawing that is read as blocks or as supports, or is ignored; "
+        "repeatable. If left out, layers of these names are.",
+    ),
+]
+Snap = Annotated[
+    float | None,
+    Option(
+        about="Ends of lines of a drawing that are so near are one corner, in m; 1e-4 of "
+        "the shorter line if left out."
+    ),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given:
+    """The options that say what is built, as given; None where they are not.
+
+    All but those of `OF_ANY` are parameters of the circular arch, and of each kind that has
+    one of that name.
+    """
+
+    heading: ClassVar[str] = "What is built"
+
+    alpha: Annotated[
+        float | None, Option(about="Half-angle of embrace in degrees, 0 to 180.")
+    ] = None
+    eta: Annotated[float | None, Option(about="Thickness-to-radius ratio, up to 2.")] = None
+    span: Annotated[
+        float | None,
+        Option(about="Instead of --alpha and --eta: distance between the springings in m."),
+    ] = None
+    rise: Annotated[
+        float | None, Option(about="Beside --span: height of the crown above them in m.")
+    ] = None
+    thickness: Annotated[
+        float | None, Option(about="Beside --span: thickness of the arch in m.")
+    ] = None
+    at: Annotated[
+        str | None,
+        Option(
+            metavar="LINE",
+            about=f"Line of --span and --rise: {', '.join(LINES)}; the intrados if left out, "
+            "which gives the clear span.",
+        ),
+    ] = None
+    ratio: Annotated[
+        float | None,
+        Option(
+            about="Instead of --eta or --thickness: thickness over the least one that stands, "
+            "as built.",
+            range=RATIO,
+        ),
+    ] = None
+    mu: Mu = None
+    friction_angle: Annotated[
+        float | None,
+        Option(about="Instead of --mu: angle of friction in degrees.", range=FRICTION_ANGLE),
+    ] = None
+    voussoirs: Annotated[
+        int | None, Option(about="Number of voussoirs, 3 to 10000; 27 if left out.")
+    ] = None
+    weight: Annotated[
+        str | None,
+        Option(
+            about="Where weight acts: centreline, or sector, as it does in true voussoirs. "
+            "If left out: sector with --span, else centreline."
+        ),
+    ] = None
+    unit_weight: Annotated[
+        float | None,
+        Option(about="Unit weight of the blocks in kN/m3; 20 in arches if left out."),
+    ] = None
+    depth: Depth = None
+    lean: Annotated[
+        float | None,
+        Option(
+            about="Angle by which gravity leans out of the plane, in degrees.", range=LEAN_DEG
+        ),
+    ] = None
+    parameters: Annotated[
+        list[str] | None,
+        Option(
+            name="--with",
+            metavar="NAME=VALUE",
+            about="Parameter of a kind of structure (blocksim kinds NAME lists them); "
+            "repeatable.",
+        ),
+    ] = None
+    tolerance: Tolerance = None
+    unit: Unit = None
+    layer: Layer = None
+    snap: Snap = None
+
+    @property
+    def sizes(self) -> dict[str, object]:
+        """Those that are parameters of a kind, by its name of each."""
+        found = given_of(self, *(one.name for one in fields(self) if one.name not in OF_ANY))
+        return {PARAMETERS.get(name, name): each for name, each in found.items()}
+
+    @property
+    def drawn(self) -> dict[str, object]:
+        """Those of drawings; empty where none is given."""
+        return given_of(self, "tolerance", "unit", "layer", "snap")
+
+    @property
+    def measured(self) -> dict[str, object]:
+        """Those that give an arch in metres; empty where none is given."""
+        return given_of(self, "span", "rise", "thickness", "at")
+
+    @property
+    def friction(self) -> float | None:
+        """Friction coefficient, given as such or as an angle.
+
+        Raises
+        ------
+        InputError
+            If both are given, or one is out of range or looks like the other.
+        """
+        mu, angle = self.mu, self.friction_angle
+        if angle is None:
+            slip = mu is not None and LARGEST_FRICTION < mu < 90
+            words = f"a coefficient: as an angle it would be --friction-angle {mu or 0:g}"
+            require(not slip, "--mu", mu, words)
+            return mu
+        require(mu is None, "--friction-angle", angle, "left out where --mu is given")
+        smooth = angle < math.pi / 2
+        words = f"in degrees: as a coefficient it would be --mu {angle:g}, in radians "
+        words += f"--friction-angle {math.degrees(angle):.4g}"
+        require(not smooth, "--friction-angle", angle, words)
+        return friction_of(angle)
+
+
+def given_of(options: object, *names: str) -> dict[str, object]:
+    """Return those of some options that are given."""
+    found = {name: getattr(options, name) for name in names}
+    return {name: each for name, each in found.items() if each is not None}

@@ -1,0 +1,115 @@
+"""The command fragility."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+
+from blocksim.ask.fragility import fragility as find
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.shaking import read_table
+from blocksim.cli.acting import Loading
+from blocksim.cli.arguments import Option
+from blocksim.cli.built import Given
+from blocksim.cli.curves import KINDS as CURVES
+from blocksim.cli.options import Json, MethodOption, Scene, Set, named_options, settings_of
+from blocksim.cli.output import answer_with, picture_kind, progress, write_files
+from blocksim.cli.subject import problem_asked
+from blocksim.common.checks import require
+from blocksim.common.sheets import write_sheet
+from blocksim.report.problems import problem_record
+from blocksim.simulation.verdict import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MOST_AMPLITUDES = 1000
+
+
+def fragility(
+    given: Given,
+    loading: Loading,
+    scene: Scene = None,
+    record: Annotated[
+        list[Path] | None,
+        Option(about="Record of the ground, a .csv file as of --shake; repeatable; required."),
+    ] = None,
+    amplitudes: Annotated[
+        tuple[float, float, int] | None,
+        Option(
+            metavar="LOW HIGH COUNT",
+            about="Amplitudes in g to which each record is scaled, evenly spaced; required.",
+        ),
+    ] = None,
+    out: Annotated[
+        list[Path] | None,
+        Option(
+            about="File to write: .csv with a row an amplitude, or a curve, .pdf, .svg, "
+            ".png; repeatable."
+        ),
+    ] = None,
+    method: MethodOption = "auto",
+    settings: Set = None,
+    as_json: Json = False,
+) -> None:
+    """Find which share of records of the ground brings it down, by their amplitude."""
+    problem = problem_asked(scene, given, loading, thick=True, record=record,
+                            amplitudes=amplitudes)  # fmt: skip
+    for path in out or ():
+        picture_kind(path, CURVES)
+    names = [str(path) for path in record or ()]
+    require(len(set(names)) == len(names), "--record", names[-1:], "each file once")
+    require(problem.shaking is None, "--shake", "given", "left out beside --record")
+    spaced = _spaced(*(amplitudes or (0.0, 0.0, 0)))
+    with named_options(), progress() as report:
+        found = find(
+            problem,
+            {name: read_table(name) for name in names},
+            spaced,
+            method=method,
+            settings=settings_of(settings),
+            progress=report,
+        )
+    shares = [found.share(each).tolist() for each in (Verdict.COLLAPSES, Verdict.UNDECIDED)]
+    rows = list(zip(found.amplitudes.tolist(), *shares, strict=True))
+    headings = ["amplitude_g", "falls", "undecided"]
+    words = (f"{each[0]:11.4g}  {each[1]:5.0%}  {each[2]:9.0%}" for each in rows)
+    answer_with(
+        lambda: {
+            "problem": problem_record(problem),
+            "rows": [dict(zip(headings, row, strict=True)) for row in rows],
+            "verdicts": dict(zip(found.records, found.verdicts, strict=True)),
+        },
+        lambda: ["  ".join(headings), *words],
+        as_json=as_json,
+    )
+    tables = {"csv": partial(write_sheet, names=headings, rows=rows)}
+    write_files(out or (), tables, lambda: _figure(problem, len(names), rows), silent=as_json)
+
+
+def _spaced(low: float, high: float, count: int) -> list[float]:
+    known = 1 <= count <= MOST_AMPLITUDES and (low < high or count == 1)
+    allowed = f"LOW below HIGH, and 1 to {MOST_AMPLITUDES} of them"
+    require(known, "--amplitudes", f"{low:g} {high:g} {count}", allowed)
+    return np.linspace(low, high, count).tolist()
+
+
+def _figure(
+    problem: Problem, records: int, rows: Sequence[tuple[float, float, float]]
+) -> Figure:
+    from blocksim.view.curvefigure import Line, curve_figure
+    from blocksim.view.sheet import title_of
+
+    across, falling, unknown = (list(each) for each in zip(*rows, strict=True))
+    lines = [Line("falls", across, falling)]
+    if any(unknown):
+        both = [falls + open for falls, open in zip(falling, unknown, strict=True)]
+        lines.append(Line("falls, or undecided", across, both))
+    title = f"{title_of(problem)}: share of {records} records that brings it down"
+    figure = curve_figure(title, "amplitude of the record [g]", "share", lines)
+    figure.axes[0].set_ylim(0, 1.02)
+    return figure

@@ -1,0 +1,198 @@
+"""Meshes as OBJ, STL, PLY and GLB: each closed body is a block; the one place with trimesh."""
+
+from __future__ import annotations
+
+import io
+import logging
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from blocksim.blocks.space.polyhedron import Polyhedron
+from blocksim.common.checks import COORDINATE, require
+from blocksim.common.errors import MISSING, InputError
+from blocksim.common.files import AnyPath, read_file
+from blocksim.common.later import require_library
+from blocksim.reading.asked import UNITS, Reading, Unit
+
+LARGEST_MESH = 20_000_000
+"""Bytes; a larger file is not read."""
+MOST_FACETS = 200_000
+"""Of a file; drawn shapes of blocks need a few dozen each."""
+MOST_CORNERS = 1000
+"""Of a block."""
+DENT = 1e-3
+"""How far a facet may lie within the hull, over the length of its block."""
+DIGITS = 6
+"""Of the largest coordinate: what single precision keeps."""
+QUIET = logging.NullHandler()
+"""Errors are said in one line here, not by the library."""
+
+Array = NDArray[np.float64]
+Facets = NDArray[np.int64]
+
+
+def read_mesh(path: AnyPath, reading: Reading) -> dict[str, Any]:
+    """Read a mesh of closed bodies, z upwards; of GLB, whose y is upwards, turned.
+
+    Parameters
+    ----------
+    path : str or path
+        Ends in .obj, .stl, .ply or .glb.
+    reading : Reading
+        Its unit, where the file says none; names of objects as layers. An object of the name
+        `supports`, or of one that is named for it, stays where it is.
+
+    Returns
+    -------
+    dict
+        As of a structure file in space, without friction.
+
+    Raises
+    ------
+    InputError
+        In one line: no mesh, too large, without a unit, or a body that is open, flat or not
+        convex.
+    MissingPart
+        If trimesh is not installed.
+    """
+    ending = Path(path).suffix.lower()[1:]
+    content = read_file(path, "mesh", f"an existing .{ending} file", LARGEST_MESH)
+    unit = reading.unit_of(Unit(metres=1.0, said="glTF is in m") if ending == "glb" else None)
+    if unit is None:
+        raise InputError(
+            "--unit", MISSING, f"given, one of {', '.join(UNITS)}: a mesh has none"
+        )
+    require(reading.snap is None, "snap", reading.snap, "left out: it is of drawings")
+    blocks: list[dict[str, Any]] = []
+    for name, points, facets in _objects(content, ending):
+        kind = re.sub(r"[._ -]*\d+$", "", name).casefold()
+        role = reading.roles.get(name.casefold(), reading.roles.get(kind))
+        if role == "ignored":
+            continue
+        corners = points[:, [0, 2, 1]] * [1, -1, 1] if ending == "glb" else points
+        bodies = list(_bodies(facets))
+        for at, body in enumerate(bodies):
+            several = len(bodies) > 1 or not name
+            own = f"{name}.{at + 1}".lstrip(".") if several else name
+            found = convex_block(own, corners, body, fixed=role == "supports")
+            found["vertices"] = (np.array(found["vertices"]) * unit.metres).round(12).tolist()
+            blocks.append(found)
+    return {"notes": [f"mesh, z upwards; {unit.said}"], "blocks": blocks}
+
+
+def convex_block(name: str, points: Array, facets: Facets, *, fixed: bool) -> dict[str, Any]:
+    """Return a closed body as an entry of `blocks`: the hull of its corners.
+
+    Facets may be turned inwards: what is closed and lies on the hull everywhere is the hull.
+
+    Raises
+    ------
+    InputError
+        In one line, if it is open, flat, or not convex.
+    """
+    field, used = f"block {name}", np.unique(facets)
+    allowed = f"at most {MOST_CORNERS} corners within {COORDINATE.high:g} m"
+    own = points[used]
+    pairs = np.sort(facets[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, times = np.unique(pairs, axis=0, return_counts=True)
+    loose = int((times % 2 * (edges[:, 0] != edges[:, 1])).sum())
+    require(loose == 0, field, f"open at {loose} edges", "a closed surface")
+    near = len(used) <= MOST_CORNERS and bool((np.abs(own) <= COORDINATE.high).all())
+    require(near, field, f"{len(used)} corners", allowed)
+    try:
+        hull = Polyhedron(own)
+    except InputError as error:
+        raise InputError(field, error.value, error.allowed) from None
+    normals = np.array([face.normal for face in hull.faces])
+    offsets = np.array([face.offset for face in hull.faces])
+    off = np.abs(points[facets] @ normals.T - offsets).max(axis=1).min(axis=1)
+    dent = float(off.max()) / float(np.ptp(own, axis=0).max())
+    way = "convex; one that is not consists of convex ones (polyhedra in a structure file)"
+    require(dent <= DENT, field, f"dented by {dent:.2g} of its length", way)
+    return {"id": name, "vertices": own.tolist(), "fixed": fixed}
+
+
+def _objects(content: bytes, ending: str) -> Iterator[tuple[str, Array, Facets]]:
+    """Give name, corners and facets of each object of a file, where it is placed."""
+    require_library("trimesh", "meshes", "mesh")
+    import trimesh
+
+    logging.getLogger("trimesh").addHandler(QUIET)
+    logging.getLogger("trimesh").propagate = False
+    options: dict[str, Any] = {"process": False}
+    if ending == "obj":
+        options |= {"split_objects": True, "group_material": False, "skip_materials": True}
+    try:
+        library = cast("Any", trimesh)
+        scene: Any = library.load_scene(io.BytesIO(content), file_type=ending, **options)
+        # The library gives objects in no order of their own.
+        meshes: list[Any] = sorted(scene.dump(), key=lambda mesh: str(mesh.metadata["name"]))
+        total = sum(len(mesh.faces) for mesh in meshes)
+        # Files without objects have no names: their bodies are numbered.
+        named = ending in {"obj", "glb"}
+        names = [str(mesh.metadata["name"]) if named else "" for mesh in meshes]
+    except Exception as error:  # a damaged file makes the library raise almost anything
+        said = " ".join(f"{type(error).__name__}: {error}".split())[:200]
+        if isinstance(error, ImportError):
+            # The library asks for another one where bytes are no text it knows.
+            said = "bytes that are no text"
+        raise InputError("file", said, f"a mesh as .{ending}") from None
+    require(0 < total <= MOST_FACETS, "mesh", f"{total} facets", f"1 to {MOST_FACETS}")
+    points = np.concatenate([np.asarray(mesh.vertices, dtype=np.float64) for mesh in meshes])
+    require(bool(np.isfinite(points).all()), "mesh", "nan or inf", "finite coordinates")
+    if np.array_equal(points, points.astype(np.float32)):
+        # Single precision: as drawn, where rounding explains how they differ.
+        largest = float(np.abs(points).max()) or 1.0
+        points = points.round(DIGITS - int(np.ceil(np.log10(largest))))
+    ends = np.cumsum([len(mesh.vertices) for mesh in meshes])[:-1]
+    for at, (mesh, each) in enumerate(zip(meshes, np.split(points, ends), strict=True)):
+        own, place = np.unique(each, axis=0, return_inverse=True)
+        name, before = names[at], names[:at].count(names[at])
+        yield f"{name}-{before + 1}" if before else name, own, place.ravel()[mesh.faces]
+
+
+def _bodies(facets: Facets) -> Iterator[Facets]:
+    """Give the facets of each closed body, and last those that are left over.
+
+    A body's facets follow each other, as programs write them: so bodies that touch at corners
+    are told apart.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    open_edges: set[tuple[int, int]] = set()
+    start = 0
+    for at, (a, b, c) in enumerate(cast("list[list[int]]", facets.tolist())):
+        edges = {
+            (min(pair), max(pair)) for pair in ((a, b), (b, c), (c, a)) if pair[0] != pair[1]
+        }
+        open_edges ^= edges
+        if open_edges:
+            continue
+        run = facets[start : at + 1]
+        start = at + 1
+        # Numbered among this run's corners: a file of many bodies has many more.
+        used, place = np.unique(run, return_inverse=True)
+        own = place.reshape(run.shape)
+        pairs = np.concatenate([own[:, :2], own[:, 1:]])
+        shape = (len(used), len(used))
+        joined = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape)
+        label = connected_components(joined, directed=False)[1][own[:, 0]]
+        yield from (run[label == each] for each in np.unique(label))
+    if open_edges:
+        yield facets[start:]
+
+
+def fans(faces: Sequence[NDArray[np.int64]]) -> Facets:
+    """Return polygons as facets of three corners each, (k, 3)."""
+    parts = [
+        np.stack([np.full(len(face) - 2, face[0]), face[1:-1], face[2:]], axis=1)
+        for face in faces
+        if len(face) > 2
+    ]
+    return np.concatenate(parts) if parts else np.empty((0, 3), dtype=np.int64)

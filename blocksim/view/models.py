@@ -1,0 +1,207 @@
+"""Blocks as models, glTF 2.0, for browsers and Blender: a recording, or a mechanism in space.
+
+Lengths are in metres, y upwards, z towards the viewer, times in seconds; an arch of which no
+radius was given has r = 1 m. A block is a node with a mesh of its convex pieces, moved by one
+animation; supports and the ground stay. What joints in space do as a collapse begins is painted
+on their faces.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from blocksim.blocks.assembly import Array, Assembly
+from blocksim.blocks.outlines import following
+from blocksim.blocks.problem import STANDARD_GRAVITY
+from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.common.words import printable
+from blocksim.simulation.recording import Recording
+from blocksim.view.canvas import colour
+from blocksim.view.gltf import Document, Ring, Solid, mesh_of
+from blocksim.view.placing import centres_at, quaternions
+from blocksim.view.solidscene import UPRIGHT, WAY, Marks, marks_of, moving_box, supports_of
+from blocksim.view.stage import Stage
+from blocksim.view.style import GROUND, PAPER
+
+if TYPE_CHECKING:
+    from blocksim.ask.check import Check
+
+AROUND = 0.5
+"""How far the ground reaches beyond what is seen, in units of its extent."""
+GOES, FRAMES = 2.0, 24
+"""How long a mechanism goes on [s], and frames of that."""
+OFF = 1e-3
+"""How far what joints do is painted off their faces [size]."""
+Body = tuple[Solid, Sequence[tuple[Solid, int]]]
+"""A mesh, and others painted on it with their materials."""
+
+
+def write_model(recording: Recording[Any], file: BinaryIO, kind: str) -> None:
+    """Write a recording as one file: glb is binary, gltf JSON with the numbers as base64."""
+    problem = recording.problem
+    seconds = recording.seconds(STANDARD_GRAVITY).astype(np.float32)
+    # Frames nearer to each other than their times can be told apart are left out.
+    latest = np.maximum.accumulate(seconds)
+    frames = np.flatnonzero(np.diff(latest, prepend=np.float32(-1.0)) > 0)
+    made = Document(len(problem.assembly.blocks))
+    made.extras = {
+        "title": printable(problem.title),
+        "engine": printable(f"{recording.engine} {recording.engine_version}"),
+        "state_hash": recording.state_hash,
+    }
+    if problem.in_space:
+        _put_solids(made, problem.assembly, seconds[frames], recording.poses[frames], {})
+    else:
+        made.extras["gravity_g"] = problem.gravity.tolist()
+        made.extras["gravity_m_s2"] = (problem.gravity * STANDARD_GRAVITY).tolist()
+        _put_prisms(made, recording, seconds, frames)
+    made.write(file, kind)
+
+
+def mechanism_model(answer: Check[SpatialAssembly]) -> bytes:
+    """Return how blocks begin to fall and come back, as .glb; still where they stand."""
+    rates, assembly = answer.mechanism, answer.problem.assembly
+    still = np.zeros((len(assembly.blocks), 3))
+    rest = np.concatenate([assembly.centres / assembly.size, still], axis=1)
+    shares = (1 - np.cos(np.linspace(0.0, 2 * math.pi, FRAMES + 1))) / 2
+    moved = WAY * (np.zeros_like(rest) if rates is None else rates)
+    poses = rest + shares[:, None, None] * moved
+    made = Document(len(assembly.blocks))
+    made.extras = {"title": printable(answer.problem.title)}
+    marks = marks_of(assembly, [each.state for each in answer.joints])
+    _put_solids(made, assembly, np.linspace(0.0, GOES, FRAMES + 1), poses, marks)
+    return made.glb()
+
+
+def _put(
+    made: Document,
+    assembly: Assembly | SpatialAssembly,
+    bodies: Iterable[Body],
+    supports: Iterable[Solid],
+    seconds: NDArray[Any],
+    places: NDArray[Any],
+    turns: NDArray[Any],
+) -> None:
+    """Add blocks that move, by places and quaternions (frames, blocks, ...), and supports."""
+    times = made.add(seconds.astype(np.float32))
+    for at, (block, (solid, painted)) in enumerate(zip(assembly.blocks, bodies, strict=True)):
+        node = made.solid(
+            printable(block.name) or f"block {at}", solid, made.stones[at % len(made.stones)],
+            painted, translation=places[0, at].tolist(), rotation=turns[0, at].tolist(),
+        )  # fmt: skip
+        made.move(node, times, "translation", places[:, at])
+        made.move(node, times, "rotation", turns[:, at])
+    base = made.material("support", colour(GROUND))
+    for at, solid in enumerate(supports):
+        made.solid(f"support {at}", solid, base)
+
+
+def _put_prisms(
+    made: Document, recording: Recording, seconds: NDArray[Any], frames: NDArray[np.intp]
+) -> None:
+    """Add blocks of the plane, footings and ground."""
+    assembly, size, stage = recording.assembly, recording.assembly.size, Stage(recording)
+    turns = quaternions(recording)[frames][..., [1, 2, 3, 0]].astype(np.float32)
+    places = np.array([centres_at(recording, int(at)) for at in frames]) * size
+    bodies = (
+        (_prisms([part - block.centre for part in block.polygons], block.depth), ())
+        for block in assembly.blocks
+    )
+    feet = (_prisms([footing * size], stage.depth * size) for footing in stage.footings)
+    places = places.astype(np.float32)
+    _put(made, assembly, bodies, feet, seconds[frames], places, turns)
+    made.solid("ground", _ground(stage, size), made.material("ground", colour(PAPER)))
+    made.animation["name"] = printable(recording.engine)
+
+
+def _put_solids(
+    made: Document, assembly: SpatialAssembly, seconds: NDArray[Any], poses: Array, marks: Marks
+) -> None:
+    """Add blocks in space, and supports."""
+    told = sorted({tone for each in marks.values() for *_, tone in each})
+    looks = {tone: made.material(f"joint {tone}", colour(tone)) for tone in told}
+    vectors = poses[..., 3:].reshape(-1, 3)
+    upright = UPRIGHT @ Rotation.from_rotvec(vectors).as_matrix() @ UPRIGHT.T
+    turns = Rotation.from_matrix(upright).as_quat().reshape(*poses.shape[:2], 4)
+    # q and -q are one rotation: each is the one nearer to that before.
+    alike = (turns[1:] * turns[:-1]).sum(axis=-1) >= 0
+    turns[1:] *= np.cumprod(np.where(alike, 1.0, -1.0), axis=0)[..., None]
+    bodies: list[Body] = []
+    for at, block in enumerate(assembly.blocks):
+        faces = [
+            (f.corners - block.centre, f.normal) for each in block.hulls for f in each.faces
+        ]
+        painted: list[tuple[Solid, int]] = []
+        for points, normal, tone in marks.get(at, []):
+            off = points - block.centre + OFF * assembly.size * normal
+            painted.append((_upright([(off, normal)], edged=False), looks[tone]))
+        bodies.append((_upright(faces), painted))
+    supports = (
+        _upright([(face.corners, face.normal) for face in piece.faces])
+        for piece in supports_of(assembly, *moving_box(assembly))
+    )
+    places = poses[..., :3] * assembly.size @ UPRIGHT.T
+    _put(made, assembly, bodies, supports, seconds, places, turns)
+    made.animation["name"] = "motion"
+
+
+def _upright(faces: Sequence[Ring], *, edged: bool = True) -> Solid:
+    """Make a mesh of faces, turned upright."""
+    rings = [
+        (_around(points, normal) @ UPRIGHT.T, UPRIGHT @ normal) for points, normal in faces
+    ]
+    edges = [
+        np.stack([ring, np.roll(ring, -1, axis=0)], axis=1).reshape(-1, 3) for ring, _ in rings
+    ]
+    return mesh_of(rings, np.concatenate(edges) if edged else None)
+
+
+def _around(points: Array, normal: Array) -> Array:
+    """Order corners of a convex face counter-clockwise, seen from outside."""
+    arms = points - points.mean(axis=0)
+    one = arms[0] / np.linalg.norm(arms[0])
+    other = np.cross(normal, one)
+    return points[np.argsort(np.arctan2(arms @ other, arms @ one))]
+
+
+def _prisms(pieces: list[Array], depth: float) -> Solid:
+    """Return prisms of convex outlines about z = 0, without the faces between two of them."""
+    faces: list[Ring] = []
+    edges: list[Array] = []
+    sides = {
+        (*start, *end)
+        for piece in pieces
+        for start, end in zip(piece.tolist(), following(piece).tolist(), strict=True)
+    }
+    for piece in pieces:
+        near = np.pad(piece, ((0, 0), (0, 1)), constant_values=depth / 2)
+        far = near * [1.0, 1.0, -1.0]
+        faces.append((near, np.array([0.0, 0.0, 1.0])))
+        faces.append((far[::-1], np.array([0.0, 0.0, -1.0])))
+        for at in range(len(piece)):
+            to = (at + 1) % len(piece)
+            along = piece[to] - piece[at]
+            inside = (*piece[to].tolist(), *piece[at].tolist()) in sides
+            if inside or not along.any():
+                continue
+            out = np.array([along[1], -along[0], 0.0]) / np.hypot(*along)
+            faces.append((np.array([near[at], far[at], far[to], near[to]]), out))
+            edges += [near[at], near[to], far[at], far[to], near[at], far[at]]
+    return mesh_of(faces, np.array(edges))
+
+
+def _ground(stage: Stage, size: float) -> Solid:
+    """Return the ground as a rectangle that reaches beyond what is seen."""
+    low, high = stage.swept.min(axis=0), stage.swept.max(axis=0)
+    beyond = AROUND * float((high - low).max())
+    (left, _, back), (right, _, front) = low - beyond, high + beyond
+    level = stage.ground
+    ring = [(left, front), (right, front), (right, back), (left, back)]
+    corners = np.array([(x, level, z) for x, z in ring]) * size
+    return mesh_of([(corners, np.array([0.0, 1.0, 0.0]))])

@@ -1,0 +1,166 @@
+"""What a recording shows at any time, in the plane or in space, and what joints are seen to do.
+
+Lengths are in units of the assembly's size, which is an arch's radius r, times in units of
+sqrt(size/g).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import JointState, classify
+from blocksim.simulation.motion import AT_REST, FRAME, UNMOVED, UNSEEN
+from blocksim.simulation.recording import Recording
+from blocksim.view.placing import Placing, distance_of
+
+SAMPLES = 500
+"""Most frames that are looked at for what a film needs to know beforehand."""
+ROUNDING = 1e-12
+"""Way from one frame to the next that is none [size]."""
+STILL, GONE = 2e-3, 3e-2
+"""Displacements between which forces at rest fade: they are those of what is built."""
+SEEN = 4e-3
+"""Turn or slip of a joint from which on it is coloured [r]: a pixel of a film."""
+
+
+class Timeline(ABC):
+    """Times of a recording, and what is known of them."""
+
+    def __init__(self, recording: Recording[Any]) -> None:
+        self.recording = recording
+
+    @cached_property
+    @abstractmethod
+    def end(self) -> float:
+        """Time until which it is shown."""
+
+    @abstractmethod
+    def joints_at(self, poses: Array, time: float) -> tuple[JointState, ...]:
+        """Tell what joints are seen to do at poses, and their time."""
+
+    @cached_property
+    def carriers(self) -> frozenset[int]:
+        """The blocks that are supports which move: the last ones."""
+        count = len(self.recording.assembly.blocks)
+        return frozenset(range(count - len(self.recording.problem.moves), count))
+
+    @property
+    def unit(self) -> float:
+        """Seconds in the unit of time."""
+        return self.recording.problem.seconds
+
+    @cached_property
+    def displaced(self) -> Array:
+        """Largest displacement of any corner at each frame."""
+        return self.recording.displacement
+
+    @property
+    def moves(self) -> bool:
+        """Whether anything can be seen to move."""
+        return bool(self.displaced.max() > SEEN)
+
+    @cached_property
+    def speed(self) -> float:
+        """Speed of the fastest corner as it ends [m/s]; 0 where blocks have lain still."""
+        times, poses = self.recording.times, self.recording.poses
+        last = int(np.searchsorted(times, self.end, "right")) - 1
+        if last == 0:
+            return 0.0
+        first = min(int(np.searchsorted(times, float(times[last]) - AT_REST * FRAME)), last - 1)
+        since = poses[first : last + 1] - poses[last]
+        # Supports that are moved do not tell whether blocks lie still.
+        since[:, sorted(self.carriers)] = 0.0
+        since = self.recording.assembly.displacement(since)
+        is_long = first > 0 or bool(self.displaced[: last + 1].max() <= UNMOVED)
+        if is_long and float(since.max()) < UNSEEN:
+            return 0.0
+        if float(since[-2]) < ROUNDING:
+            return 0.0
+        step = float(times[last] - times[last - 1]) * self.recording.problem.seconds
+        return float(since[-2]) * self.recording.assembly.size / step
+
+    @cached_property
+    def states(self) -> tuple[JointState, ...]:
+        """Joint states that are ever seen, in the order of `JointState`, closed left out."""
+        times, poses = self.recording.times.tolist(), self.recording.poses
+        seen = {each for k in self.shown for each in self.joints_at(poses[k], times[k])}
+        return tuple(state for state in JointState if state in seen - {JointState.CLOSED})
+
+    @cached_property
+    def shown(self) -> list[int]:
+        """Frames that are shown, or as many of them as tell enough of a long recording."""
+        last = int(np.searchsorted(self.recording.times, self.end, "right")) - 1
+        return sorted({*range(0, last, 1 + last // SAMPLES), last})
+
+    def between(self, time: float) -> tuple[float, int, int, float]:
+        """Return a time that is shown, the frames around it, and its share of the way."""
+        times = self.recording.times
+        time = float(np.clip(time, times[0], self.end))
+        later = int(np.clip(np.searchsorted(times, time), 1, len(times) - 1))
+        earlier = later - 1 if len(times) > 1 else later
+        gap = times[later] - times[earlier]
+        return time, earlier, later, float((time - times[earlier]) / gap) if gap > 0 else 0.0
+
+    def statics_at(self, time: float) -> float:
+        """Return how much forces at rest still say at a time, from 1 falling to 0."""
+        moved = float(np.interp(time, self.recording.times, self.displaced))
+        return float(np.interp(moved, (STILL, GONE), (1.0, 0.0)))
+
+
+class SeenJoints:
+    """States of joints, looked at in frames; corners below `low` lie on the ground."""
+
+    def __init__(
+        self, recording: Recording, placing: Placing, frames: Sequence[int], low: float
+    ) -> None:
+        self._recording, self._assembly = recording, recording.assembly
+        self._placing, self._frames, self._low = placing, frames, low
+
+    def at(self, poses: Array, time: float) -> tuple[JointState, ...]:
+        """Tell the states at poses, (blocks, 3 or 6), and their time."""
+        # Joint states are those of motion in the plane.
+        if not self._recording.problem.is_planar:
+            return (JointState.CLOSED,) * len(self._assembly.joints)
+        parted, gone = self._fates
+        states: list[JointState] = []
+        for joint in classify(self._assembly, poses, least=SEEN):
+            place = len(states)
+            open_by_now = time >= parted[place]
+            state = JointState.OPEN if open_by_now else joint.state
+            states.append(JointState.CLOSED if time >= gone[place] else state)
+        return tuple(states)
+
+    @cached_property
+    def _fates(self) -> tuple[Array, Array]:
+        """Times from which each joint has parted, and is none any more, (joints,) each.
+
+        What has parted and meets again is no hinge, and a block that lies on the ground, or
+        has come loose of both its neighbours, is rubble: it has no joints.
+        """
+        before, after, *_ = self._assembly.joint_arrays
+        blocks = len(self._assembly.blocks)
+        parted = np.full(len(before), np.inf)
+        rubble = np.full(blocks + 1, np.inf)  # the last stands for the support
+        for frame in self._frames:
+            time = float(self._recording.times[frame])
+            seen = classify(self._assembly, self._recording.poses[frame], least=SEEN)
+            faces = self._placing.faces(frame, frame, 0.0)[..., :2]
+            # Turned far, blocks may have left each other though neither end seems open.
+            apart = np.array([joint.state is JointState.OPEN for joint in seen])
+            apart |= distance_of(faces[:, 0], faces[:, 1]) > SEEN
+            parted = np.minimum(parted, np.where(apart, time, np.inf))
+            held = np.zeros(blocks + 1, dtype=bool)
+            for side in (before, after):
+                held[side[parted > time]] = True
+            bottoms = self._placing.corners(frame, frame, 0.0)[..., 1].min(axis=(1, 2))
+            lowest = np.full(blocks, np.inf)
+            np.minimum.at(lowest, self._placing.owner, bottoms)
+            loose = ~held[:blocks] | (lowest < self._low)
+            rubble[:blocks] = np.minimum(rubble[:blocks], np.where(loose, time, np.inf))
+        return parted, np.minimum(rubble[before], rubble[after])

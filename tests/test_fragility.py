@@ -1,0 +1,61 @@
+"""Fragility, held against pulses whose least duration that overturns is known."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from running import inside
+from structure_cases import case, scenes
+
+from blocksim import InputError, fragility, structure_of
+from blocksim.blocks.shaking import table_of
+
+NAME = "pulse_1x4_05"
+LEAST = float(case(NAME)["expected"]["least_duration_s"])
+"""Of a pulse of 0.5 g that overturns the block, in closed form."""
+
+
+def test_the_share_that_falls_is_that_of_pulses_long_enough() -> None:
+    problem = replace(structure_of(scenes(NAME)[0]), shaking=None)
+    shares = (0.9, 1.05)
+    records = {
+        f"{share:g}": table_of(np.array([0, share * LEAST]), np.ones(2)) for share in shares
+    }
+    # Below 0.25 g nothing starts to rock.
+    found = fragility(problem, records, [0.2, 0.5], method="direct")
+    assert found.records == ("0.9", "1.05")
+    verdicts = [[each.value for each in row] for row in found.verdicts]
+    assert verdicts == [["stands", "stands"], ["stands", "collapses"]]
+
+
+def test_a_curve_and_a_table_are_written(tmp_path: Path) -> None:
+    record, table, curve = (tmp_path / name for name in ("a.csv", "out.csv", "out.svg"))
+    record.write_text("time_s,acceleration_g\n0,1\n0.5,1\n")
+    block = ("column", "--mu", "2", "--with", "drums=1", "--with", "drum_height=4")
+    asked = ("fragility", *block, "--method", "direct", "--record", str(record))
+    wide = ("--amplitudes", "0.1", "4", "2")
+    done = inside(*asked, *wide, "--out", str(table), "--out", str(curve))
+    assert done.returncode == 0, done.stderr
+    rows = list(csv.DictReader(table.read_text().splitlines()))
+    assert [(row["amplitude_g"], row["falls"]) for row in rows] == [
+        ("0.1", "0.0"),
+        ("4.0", "1.0"),
+    ]
+    assert 'id="falls"' in curve.read_text()
+    said = json.loads(inside(*asked, *wide, "--json").stdout)
+    assert [each["falls"] for each in said["rows"]] == [0.0, 1.0]
+    assert said["verdicts"] == {str(record): ["stands", "collapses"]}
+
+
+def test_amplitudes_have_to_grow() -> None:
+    with pytest.raises(InputError, match="growing"):
+        fragility(
+            structure_of(scenes(NAME)[0]),
+            {"a": table_of(np.array([0, 1]), np.ones(2))},
+            [0.2, 0.1],
+        )

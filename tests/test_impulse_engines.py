@@ -1,0 +1,136 @@
+"""Engines of impulses, on both sides of the least thickness and under what cannot matter.
+
+Truth: limit analysis. How near to it each is asked is what its contacts allow.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import pytest
+from arches import ARCHES, arch_at, bracket_at, held_in
+from images import mirrored, renumbered
+
+from blocksim import Arch, Assembly, CircularArch, JointState, Problem, Verdict, simulate
+from blocksim.arch import limit
+from blocksim.arch.modes import observed_mode
+from blocksim.engines import get_engine
+from blocksim.engines.base import Settings
+from blocksim.simulation.observation import observe
+
+LONG = pytest.mark.long
+ASIDE = {"pymunk": 0.01, "pybullet": 0.01, "mujoco": 0.005}
+NEAREST = {"pymunk": 0.002, "pybullet": 0.005, "mujoco": 0.005}
+"""Below the least thickness the mode is told from so near on."""
+SWEEPS = {"pymunk": 1, "pybullet": 5000, "mujoco": 1000}
+EACH = [
+    pytest.param(engine, arch, marks=[LONG] if (engine, at) == ("mujoco", 2) else [])
+    for engine, arches in ARCHES.items()
+    for at, arch in enumerate(arches)
+]
+
+
+@pytest.fixture(autouse=True)
+def installed(request: pytest.FixtureRequest) -> None:
+    """Wheels of pybullet are not there for newer Pythons, mujoco is optional."""
+    pytest.importorskip(request.getfixturevalue("engine"), exc_type=ImportError)
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+@pytest.mark.parametrize(("engine", "arch"), EACH)
+def test_both_sides_of_the_least_thickness(engine: str, arch: Any, side: int) -> None:
+    """By the onset test, and let go, but for mujoco: a motion takes it minutes."""
+    *shape, mode = arch
+    assert limit.least_thickness(math.radians(shape[0]), *shape[1:]).mode is mode
+    built = arch_at(1 + side * ASIDE[engine], *shape)
+    moving = engine != "mujoco"
+    seen = observe(CircularArch.of(built, shape[1]).problem(), engine, moving=moving)
+    right = Verdict.STANDS if side > 0 else Verdict.COLLAPSES
+    assert seen.verdict is right
+    assert not moving or seen.motion.verdict is right
+    if engine == "pymunk" and side > 0:
+        assert seen.onset.acceleration < Settings.still
+        assert {joint.state for joint in seen.joints} == {JointState.CLOSED}
+
+
+@pytest.mark.parametrize(("engine", "arch"), EACH)
+def test_mode_just_below_the_least_thickness(engine: str, arch: Any) -> None:
+    *shape, mode = arch
+    built = arch_at(1 - NEAREST[engine], *shape)
+    seen = observe(CircularArch.of(built, shape[1]).problem(), engine, moving=False)
+    assert seen.verdict is Verdict.COLLAPSES
+    assert observed_mode(seen.joints, built) is mode
+
+
+@pytest.mark.parametrize(
+    ("engine", "arch", "tol"),
+    [
+        *(("pymunk", ARCHES["pymunk"][at], 0.002) for at in (1, 3, 5, 8)),
+        ("mujoco", ARCHES["mujoco"][0], 1e-3),
+    ],
+)
+def test_bracket_holds_the_limit(engine: str, arch: Any, tol: float) -> None:
+    *shape, mode = arch
+    found = bracket_at(*shape, method=engine, tol=tol, confirm=engine != "mujoco")
+    assert found.arch.mode_limit is mode
+    assert found.arch.centre == pytest.approx(found.arch.eta_limit, rel=tol)
+    assert found.arch.eta_low < found.arch.eta_high
+    assert 1 - found.arch.eta_low / found.arch.eta_high <= tol
+    assert found.undecided == 0
+
+
+@pytest.mark.parametrize(
+    ("engine", "seconds"), [("pymunk", 1.0), ("pybullet", 0.5), ("mujoco", 0.2)]
+)
+def test_same_motion_in_every_run(engine: str, seconds: float) -> None:
+    arch = Arch(half_angle=math.pi / 2, eta=0.09, voussoirs=9)
+    first, second, sliding = (
+        simulate(CircularArch.of(arch, friction=mu), method=engine, duration=seconds).state_hash
+        for mu in (0.6, 0.6, 0.3)
+    )
+    assert first == second != sliding
+
+
+def verdict(engine: str, assembly: Assembly, mu: float) -> Any:
+    return held_in(get_engine(engine), assembly, mu, sweeps=SWEEPS[engine])
+
+
+@pytest.mark.parametrize("change", [mirrored, partial(renumbered, seed=1)])
+@pytest.mark.parametrize("side", [-1, 1])
+@pytest.mark.parametrize(
+    ("engine", "arch"),
+    [
+        *(("pymunk", ARCHES["pymunk"][at]) for at in (1, 3, 5, 8)),
+        *(("pybullet", ARCHES["pybullet"][at]) for at in (0, 1)),
+    ],
+)
+def test_mirror_and_order_change_no_verdict(
+    engine: str, arch: Any, side: int, change: Callable[[Problem], Problem]
+) -> None:
+    built = arch_at(1 + side * ASIDE[engine], *arch[:4])
+    image = change(CircularArch.of(built, arch[1]).problem())
+    right = Verdict.STANDS if side > 0 else Verdict.COLLAPSES
+    assert verdict(engine, image.assembly, arch[1])[0] is right
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+@pytest.mark.parametrize(
+    ("engine", "other"),
+    [
+        # Radius and depth together: a deeper arch is another one in space.
+        ("pybullet", {"radius": 0.01, "depth": 0.01}),
+        ("pybullet", {"radius": 100.0, "depth": 100.0}),
+        ("mujoco", {"radius": 100.0, "depth": 100.0, "specific_weight": 10.0}),
+    ],
+)
+def test_size_and_material_change_nothing(
+    engine: str, other: dict[str, float], side: int
+) -> None:
+    arch = arch_at(1 + side * ASIDE[engine], *ARCHES[engine][0][:4])
+    said, start = verdict(engine, replace(arch, **other).assembly(), 0.7)
+    assert said is (Verdict.STANDS if side > 0 else Verdict.COLLAPSES)
+    assert start == pytest.approx(verdict(engine, arch.assembly(), 0.7)[1], abs=1e-6)

@@ -1,0 +1,181 @@
+"""Meshes of others, and assemblies of compas that are not planar, are blocks in space."""
+
+from __future__ import annotations
+
+import copy
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from drawn import written
+from running import inside
+
+import blocksim
+from blocksim import InputError
+from blocksim.kinds.files import load_structure, structure_of
+from blocksim.reading.asked import Reading
+from blocksim.reading.compas import read_compas
+from blocksim.reading.meshes import read_mesh
+
+trimesh = pytest.importorskip("trimesh")
+UPRIGHT = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1.0]])
+METRES = Reading(unit="m")
+
+
+def dome() -> Any:
+    return blocksim.Dome(lunes=4, courses=3, thickness=0.05, friction=0.7).problem()
+
+
+def solids() -> dict[str, Any]:
+    """Return the blocks of a dome and its ground as meshes, by name."""
+    assembly, shape = dome().assembly, trimesh.triangles.to_kwargs
+    return {
+        block.name: trimesh.util.concatenate([
+            trimesh.Trimesh(**shape(each.triangles)) for each in block.hulls
+        ])
+        for block in (*assembly.blocks, *assembly.supports)
+    }  # fmt: skip
+
+
+def file_of(folder: Path, kind: str, scale: float = 1.0) -> Path:
+    path, meshes = folder / f"dome.{kind}", {}
+    for name, mesh in solids().items():
+        mesh.apply_scale(scale)
+        if kind == "glb":
+            mesh.apply_transform(UPRIGHT)
+        meshes["supports" if name == "ground" else name] = mesh
+    scene: Any = trimesh.Scene(meshes)
+    if kind in {"stl", "ply"}:
+        scene = trimesh.util.concatenate(list(meshes.values()))
+    made = scene.export(file_type=kind)
+    return written(path, made if isinstance(made, bytes) else made.encode())
+
+
+@pytest.mark.parametrize("kind", ["obj", "stl", "ply", "glb"])
+def test_a_dome_is_the_same_as_a_mesh(tmp_path: Path, kind: str) -> None:
+    """Weights, joints and margin are those of the kind, to the digits of the file."""
+    table = read_mesh(
+        file_of(tmp_path, kind, 1000.0 if kind == "stl" else 1.0),
+        Reading(unit="mm") if kind == "stl" else METRES,
+    )
+    if kind in {"stl", "ply"}:
+        assert not any(each["fixed"] for each in table["blocks"])
+        table["blocks"][-1]["fixed"] = True
+    found, known = structure_of(table | {"friction": 0.7}), dome()
+    assert len(found.assembly.joints) == len(known.assembly.joints)
+    weights = [np.sort(each.assembly.weights) for each in (found, known)]
+    assert weights[0] == pytest.approx(weights[1], rel=1e-3)
+    margins = [blocksim.equilibrium(each).margin for each in (found, known)]
+    assert margins[0] == pytest.approx(margins[1], abs=1e-3)
+
+
+def box(*, faces: slice = slice(None), **changes: Any) -> Any:
+    made = trimesh.creation.box(**changes)
+    made.faces = made.faces[faces]
+    return made
+
+
+def test_boxes_that_touch_are_told_apart_and_turned_ones_taken(tmp_path: Path) -> None:
+    """Facets turned inwards are as good."""
+    table = trimesh.util.concatenate([box(), box().apply_translation([0, 0, 1])])
+    table.invert()
+    content = table.export(file_type="stl")
+    path = written(tmp_path / "two.stl", content)
+    found = read_mesh(path, Reading(unit="ft"))
+    assert [each["id"] for each in found["blocks"]] == ["1", "2"]
+    corners = np.array(found["blocks"][1]["vertices"])
+    assert np.ptp(corners, axis=0) == pytest.approx([0.3048] * 3, rel=1e-6)
+
+
+def flat() -> Any:
+    made = box()
+    made.vertices[:, 2] = 0
+    return made
+
+
+BROKEN = {
+    "open.stl": (lambda: box(faces=slice(1, None)), "open at 3 edges"),
+    "flat.stl": (flat, "a flat hull"),
+    "ring.ply": (lambda: trimesh.creation.annulus(0.5, 1, 0.3, sections=8), "dented"),
+    "far.stl": (lambda: box(extents=(1e12, 1, 1)), "within 1e+09 m"),
+    "round.stl": (lambda: trimesh.creation.icosphere(subdivisions=5), "10242 corners"),
+    "many.ply": (lambda: trimesh.creation.icosphere(subdivisions=7), "327680 facets"),
+    "large.stl": (lambda: b"x" * 20_000_001, "at most 20000000 bytes"),
+    "junk.glb": (lambda: b"glTF\x02" + b"\xff" * 99, "a mesh as .glb"),
+    "junk.stl": (lambda: b"\xff" * 99, ".stl"),
+    "nan.obj": (lambda: b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "finite coordinates"),
+    "lost.obj": (lambda: b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "mesh"),
+    "empty.obj": (lambda: b"", "0 facets"),
+    "free.ply": (
+        lambda: trimesh.util.concatenate([box(), box().apply_translation([0, 0, 1])]),
+        "all free",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_broken_meshes_are_refused_in_one_line(tmp_path: Path, name: str) -> None:
+    make, said = BROKEN[name]
+    made = make()
+    content = made if isinstance(made, bytes) else made.export(file_type=name[-3:])
+    path = written(tmp_path / name, content)
+    done = inside("check", str(path), "--mu", "0.7", "--unit", "m")
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert said in done.stderr
+    assert len(done.stderr) < 700 + len(str(path))
+
+
+def test_a_mesh_has_no_unit_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = file_of(tmp_path, "obj")
+    with pytest.raises(InputError, match="--unit is missing"):
+        load_structure(path, friction=0.7)
+    monkeypatch.setattr("blocksim.common.later.find_spec", lambda _: None)
+    with pytest.raises(blocksim.MissingPart, match=r"pip install 'blocksim\[mesh\]'"):
+        load_structure(path, friction=0.7, reading=METRES)
+
+
+def compas_dome(*, dem: bool) -> dict[str, Any]:
+    """Return a dome as compas_assembly or compas_dem writes it."""
+    nodes, elements = {}, {}
+    for at, (name, mesh) in enumerate(solids().items()):
+        vertex = {
+            str(k): dict(zip("xyz", p.tolist(), strict=True))
+            for k, p in enumerate(mesh.vertices)
+        }
+        mesh_data = {
+            "vertex": vertex,
+            "face": {str(k): f.tolist() for k, f in enumerate(mesh.faces)},
+        }
+        held = {"is_support": name == "ground"}
+        nodes[str(at)] = {
+            "block": {"dtype": "compas_assembly.datastructures/Block", "data": mesh_data},
+            **held,
+        }
+        geometry = {"dtype": "compas.datastructures/Mesh", "data": mesh_data}
+        element = {"geometry": geometry, "transformation": None, **held}
+        elements[f"guid-{at}"] = {"dtype": "compas_dem.elements/Block", "data": element}
+    if dem:
+        return {
+            "dtype": "compas_dem.models/BlockModel",
+            "data": {"elements": elements, "graph": {}},
+        }
+    graph = {"dtype": "compas.datastructures/Graph", "data": {"node": nodes, "edge": {}}}
+    return {"dtype": "compas_assembly.datastructures/Assembly", "data": {"graph": graph}}
+
+
+@pytest.mark.parametrize("dem", [False, True])
+def test_an_assembly_of_compas_in_space_is_its_blocks(dem: bool) -> None:
+    table = compas_dome(dem=dem)
+    found, known = structure_of(read_compas(table) | {"friction": 0.7}), dome()
+    assert len(found.assembly.joints) == len(known.assembly.joints)
+    margins = [blocksim.equilibrium(each).margin for each in (found, known)]
+    assert margins[0] == pytest.approx(margins[1], abs=1e-6)
+    broken = copy.deepcopy(table)
+    inner = broken["data"]
+    mesh = inner["elements"]["guid-3"]["data"]["geometry"] if dem else (
+        inner["graph"]["data"]["node"]["3"]["block"]
+    )  # fmt: skip
+    mesh["data"]["face"].popitem()
+    with pytest.raises(InputError, match="open at 3 edges"):
+        read_compas(broken)
