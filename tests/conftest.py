@@ -11,9 +11,9 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 from sweeps import SIMULATED, Rows, design_of, rows_of
-from windows import Windows
+from windows import PATIENCE, Windows
 
 from blocksim import sweep
 from blocksim.sweeps import run
@@ -22,10 +22,15 @@ from blocksim.sweeps import run
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
-# The same examples in every run, time not asserted; tests of numbers that cost little ask
-# for more.
+# The same examples in every run, time not asserted, nor how long a machine that is busy takes
+# to draw them; tests of numbers that cost little ask for more.
 settings.register_profile(
-    "blocksim", deadline=None, derandomize=True, database=None, max_examples=15
+    "blocksim",
+    deadline=None,
+    derandomize=True,
+    database=None,
+    max_examples=15,
+    suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("blocksim")
 
@@ -73,10 +78,13 @@ def browser() -> Iterator[Any]:
     chromium = next((path for path in map(shutil.which, names) if path), None)
     if chromium is None:
         pytest.skip("no Chromium here (apt-get install chromium-headless-shell)")
+    playwright.expect.set_options(timeout=1000 * PATIENCE)
     with playwright.sync_playwright() as engine:
         # Chromium's sandbox refuses to work for root.
         arguments = ["--no-sandbox"] if os.geteuid() == 0 else []
-        found = engine.chromium.launch(executable_path=chromium, args=arguments)
+        found = engine.chromium.launch(
+            executable_path=chromium, args=arguments, timeout=1000 * PATIENCE
+        )
         yield found
         found.close()
 

@@ -18,7 +18,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -27,10 +26,10 @@ from typing import Any
 
 SLOW = 10.0
 """Processor time from which on a command hangs [s]."""
-WAITS, LONGEST = 30.0, 300.0
-"""Time by the clock after which it is ended, if it does nothing and in any case [s]."""
-BUSY = 1.0
-"""Processor time from which on it does something, and may wait for others [s]."""
+WAITS = 30.0
+"""Time by the clock for which it may wait, without asking for a processor [s]."""
+LOOK = 0.1
+"""Time by the clock between two looks at it [s]."""
 LARGEST = 1 << 30
 """Most memory of a command [bytes]."""
 ROOM = 8 << 30
@@ -67,7 +66,7 @@ class Ended:
     out, err : bytes
         What it said.
     seconds : float
-        Processor time, or what it was given by the clock if it was ended.
+        Processor time, or `SLOW` and more if it was ended because it waited.
     memory : int
         Most it had at once [bytes].
     left : tuple of str
@@ -179,40 +178,43 @@ def _watched(asked: dict[str, Any]) -> dict[str, Any] | None:
     if child == 0:
         _become(asked, place, temporary)
         return None
-    started = time.monotonic()
+    waits = 0.0
     end = os.pidfd_open(child)
-    while not select.select([end], [], [], 0.1)[0]:
-        if _hangs(time.monotonic() - started, _spent(child)):
+    while not select.select([end], [], [], LOOK)[0]:
+        asleep, spent = _seen(child)
+        waits = waits + LOOK if asleep else 0.0
+        if waits > WAITS or spent > SLOW + 1:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(child, signal.SIGKILL)
     os.close(end)
     _, status, usage = os.wait4(child, 0)
     with contextlib.suppress(ProcessLookupError):
         os.killpg(child, signal.SIGKILL)
-    clock = time.monotonic() - started
     spent = usage.ru_utime + usage.ru_stime
     left = sorted(str(path.relative_to(temporary)) for path in temporary.rglob("*"))
     shutil.rmtree(temporary, ignore_errors=True)
     return {
         "code": os.waitstatus_to_exitcode(status),
-        "seconds": clock if clock > WAITS and _hangs(clock, spent) else spent,
+        "seconds": spent + SLOW if waits > WAITS else spent,
         "memory": usage.ru_maxrss * 1024,
         "left": left,
     }
 
 
-def _hangs(clock: float, spent: float) -> bool:
-    """Tell whether a command has taken too long."""
-    waits = clock > WAITS and spent < BUSY
-    return waits or clock > LONGEST or spent > SLOW + 1
+def _seen(pid: int) -> tuple[bool, float]:
+    """Whether nothing of a process wants a processor or a disk now, and what it has had [s].
 
-
-def _spent(pid: int) -> float:
-    """Processor time of a process so far [s]."""
+    One that has to wait for a processor asks for it, however long others keep it busy.
+    """
+    spent, asleep = 0.0, True
     with contextlib.suppress(OSError):
         words = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-        return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
-    return 0.0
+        spent = (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
+        for thread in Path(f"/proc/{pid}/task").iterdir():
+            state = (thread / "stat").read_text().rpartition(")")[2].split()[0]
+            others = map(int, (thread / "children").read_text().split())
+            asleep = asleep and state == "S" and all(_seen(each)[0] for each in others)
+    return asleep, spent
 
 
 def _become(asked: dict[str, Any], place: Path, temporary: Path) -> None:

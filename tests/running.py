@@ -17,16 +17,22 @@ PROGRAM = (sys.executable, "-m", "blocksim")
 
 
 def blocksim(
-    *arguments: str, cwd: Path | None = None, before: Callable[[], None] | None = None
+    *arguments: str, cwd: Path | None = None, before: str = ""
 ) -> subprocess.CompletedProcess[str]:
-    """Run it to its end; `before` is called in the new process."""
+    """Run it to its end; `before` are statements of Python that its process begins with."""
+    then = "import sys\nsys.argv[0] = 'blocksim'\nfrom blocksim.cli import main\nmain()"
+    program = (sys.executable, "-c", f"{before}\n{then}") if before else PROGRAM
     return subprocess.run(
-        [*PROGRAM, *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-        cwd=cwd,
-        preexec_fn=before,
+        [*program, *arguments], capture_output=True, text=True, check=False, cwd=cwd
+    )
+
+
+def small_files(largest: int) -> str:
+    """Statements after which no file may have more bytes; no compiled module is cut."""
+    return (
+        "import os, resource, sys\n"
+        "sys.dont_write_bytecode, os.environ['PYTHONDONTWRITEBYTECODE'] = True, '1'\n"
+        f"resource.setrlimit(resource.RLIMIT_FSIZE, ({largest}, {largest}))"
     )
 
 

@@ -18,6 +18,7 @@ import pytest
 from filelock import FileLock
 from PIL import Image
 from running import inside
+from windows import new_page
 
 from blocksim import Recording, ask, load_recording, structure_of
 from blocksim.view.models import write_model
@@ -260,8 +261,7 @@ def test_the_validator_finds_nothing(
 @pytest.fixture
 def viewer(browser: Any, modules: Path) -> Iterator[Any]:
     """A page with three.js, which shows a model; everything comes from the disk."""
-    context = browser.new_context(viewport={"width": 640, "height": 400})
-    page = context.new_page()
+    page = new_page(browser, viewport={"width": 640, "height": 400})
     wrong: list[str] = []
     page.on("pageerror", lambda error: wrong.append(str(error)))
 
@@ -277,14 +277,14 @@ def viewer(browser: Any, modules: Path) -> Iterator[Any]:
             else:
                 route.fulfill(path=modules / path[1:], content_type=kind)
 
-        context.route("**/*", serve)
+        page.route("**/*", serve)
         page.goto("http://gltf.test/viewer.html")
         page.wait_for_function("window.ready")
         assert wrong == []
         return page
 
     yield show
-    context.close()
+    page.context.close()
 
 
 @pytest.mark.parametrize("kind", [pytest.param("planar", marks=pytest.mark.long), "spatial"])

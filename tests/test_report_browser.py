@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from itertools import product
 
@@ -10,7 +9,7 @@ import pytest
 from matplotlib.colors import to_rgb
 from report_rows import ROW, rows
 from vision import contrast
-from windows import Windows
+from windows import Windows, hold_clock, tick, wait_until
 
 from blocksim import Mode
 from blocksim.kinds.loading import load_known
@@ -65,19 +64,24 @@ def test_the_slider_moves_the_blocks(page, windows: Windows) -> None:
 def test_it_plays_to_the_end_and_can_be_stopped(page, windows: Windows) -> None:
     figure = page.locator(".motion").first
     button, slider = figure.locator("button"), figure.locator("input")
+    hold_clock(page)
+
+    def seen(*now: float) -> tuple[str, float]:
+        for each in now:
+            tick(page, each)
+        return button.inner_text(), float(slider.input_value())
+
     button.focus()
     page.keyboard.press("Enter")
-    playwright.expect(button).to_have_text("Stop")
-    # It stands at its end before.
-    playwright.expect(slider).to_have_value(re.compile(r"^0\.\d+$"))
+    # It stands at its end before, and takes three seconds.
+    assert seen(1000) == ("Stop", 0)
+    assert seen(2500) == ("Stop", 0.5)
     page.keyboard.press("Enter")
-    stopped = float(slider.input_value())
-    assert 0 < stopped < 1
-    page.wait_for_timeout(200)
-    assert float(slider.input_value()) == stopped
+    assert seen(2600, 2700) == ("Play", 0.5)
     page.keyboard.press("Enter")
-    playwright.expect(slider).to_have_value("1", timeout=10_000)
-    playwright.expect(button).to_have_text("Play")
+    assert seen(5000) == ("Stop", 0.5)
+    assert seen(6200) == ("Stop", 0.9)
+    assert seen(6600, 6700) == ("Play", 1)
     assert windows.wrong("file:") == []
 
 
@@ -218,7 +222,7 @@ def test_names_are_written_as_they_are(page) -> None:
 
 def test_points_of_the_map_lead_to_their_rows(page, windows: Windows) -> None:
     page.locator('.map a[href="#row-3"]').last.click()
-    assert page.url.endswith("report.html#row-3")
+    wait_until(page, lambda: page.url.endswith("report.html#row-3"))
     assert len(page.context.pages) == 1
     row = page.locator("#row-3")
     assert "fig17_low_sliding_rotational_125" in row.inner_text()

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 from filelock import FileLock
+from windows import new_page, wait_until
 
 pytest.importorskip("mkdocs", reason="the extra docs is not installed")
 ROOT = Path(__file__).parent.parent
@@ -68,6 +69,12 @@ def test_links_are_of_the_site_and_formulas_are_drawn(site: Path) -> None:
     assert "map --phi --out map.png" in re.sub("<[^>]+>", "", paper)
 
 
+def is_dark(page: Any) -> bool:
+    """Tell whether its ground is, of which scripts decide that go on once it is loaded."""
+    ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
+    return sum(int(part) for part in ground.strip("rgba()").split(",")[:3]) < 200
+
+
 @pytest.mark.parametrize(
     ("widths", "schemes"),
     [
@@ -84,7 +91,7 @@ def test_pages_fit_the_screen_and_ask_nothing_of_the_network(
     site: Path, browser: Any, widths: tuple[int, int], schemes: tuple[str, str]
 ) -> None:
     """Each in a window of one width and then of the other, in one of the schemes by turns."""
-    pages = {each: browser.new_context(color_scheme=each).new_page() for each in schemes}
+    pages = {each: new_page(browser, color_scheme=each) for each in schemes}
     asked: list[str] = []
     for page in pages.values():
         page.on("request", lambda request: asked.append(request.url))
@@ -97,9 +104,7 @@ def test_pages_fit_the_screen_and_ask_nothing_of_the_network(
         broken = "[...document.images].filter(i => i.complete && !i.naturalWidth).length"
         assert page.evaluate(broken) == 0, name
         assert page.locator("h1").count() == 1, name
-        ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
-        level = sum(int(part) for part in ground.strip("rgba()").split(",")[:3])
-        assert (level < 200) == (scheme == "dark"), name
+        wait_until(page, lambda page=page, scheme=scheme: is_dark(page) == (scheme == "dark"))
     assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []
     for page in pages.values():
         page.context.close()

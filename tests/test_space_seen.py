@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from running import inside
 from scipy.spatial.transform import Rotation
+from windows import wait_until
 
 import blocksim
 from blocksim import JointState, Recording
@@ -188,13 +189,7 @@ def test_the_page_is_shown_in_a_browser(windows: Any, tmp_path: Path) -> None:
     path = tmp_path / "dome.html"
     path.write_text(turning_page(blocksim.check(thin_dome())), encoding="utf-8")
     page = windows.open(path.as_uri(), 420, 420)
-    page.set_default_timeout(120_000)
-    asked = "document.getElementById('model').loaded"
-    for _ in range(120):
-        if page.evaluate(asked):
-            break
-        page.wait_for_timeout(500)
-    assert page.evaluate(asked)
+    wait_until(page, lambda: page.evaluate("document.getElementById('model').loaded"))
     assert page.evaluate("document.getElementById('model').availableAnimations") == ["motion"]
     assert [
         each

@@ -9,7 +9,6 @@ from __future__ import annotations
 import io
 import math
 import os
-import resource
 import stat
 import subprocess
 import sys
@@ -21,7 +20,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 import pytest
-from running import blocksim, inside
+from running import blocksim, inside, small_files
 
 from blocksim import Arch, CircularArch, InputError, MachineError, check, simulate
 from blocksim.common.files import make_folder, require_place, write_whole
@@ -284,15 +283,9 @@ def test_every_step_fails_once(kind: str, writers: Writers, tmp_path: Path) -> N
 # Exit codes.
 
 
-def small() -> None:
-    # Compiled modules would be cut, too.
-    os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
-    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
-
-
 def test_a_full_disk_has_an_exit_code_of_its_own(tmp_path: Path) -> None:
     words = ("simulate", "semicircle", "--eta", "0.2", "--out", "a.npz")
-    done = blocksim(*words, cwd=tmp_path, before=small)
+    done = blocksim(*words, cwd=tmp_path, before=small_files(1000))
     assert done.returncode == 74
     assert done.stderr == "blocksim: --out = 'a.npz': the system says 'File too large'\n"
     assert not list(tmp_path.iterdir())

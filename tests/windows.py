@@ -2,7 +2,49 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
 from typing import Any
+
+PATIENCE = 300.0
+"""Ends what waits for nothing; a machine that is busy elsewhere is no fault [s]."""
+
+
+def wait_until(page: Any, true: Callable[[], bool]) -> None:
+    """Playwright's own waiting evaluates text in the page, which pages of ours forbid."""
+    deadline = time.monotonic() + PATIENCE
+    while not true():
+        assert time.monotonic() < deadline, "waited for nothing"
+        page.wait_for_timeout(50)
+
+
+def settle(page: Any) -> None:
+    """Wait until what was done is drawn."""
+    page.evaluate(
+        "() => new Promise((d) => requestAnimationFrame(() => requestAnimationFrame(d)))"
+    )
+
+
+def hold_clock(page: Any) -> None:
+    """Have pictures of a page drawn by `tick` alone, once those that wait are drawn."""
+    page.evaluate("""() => {
+      const draw = window.requestAnimationFrame.bind(window);
+      window.held = [];
+      window.requestAnimationFrame = (picture) => held.push(picture);
+      return new Promise((done) => draw(() => draw(done)));
+    }""")
+
+
+def tick(page: Any, now: float) -> None:
+    """Draw what waits as if it were that time [ms]."""
+    page.evaluate("(now) => { for (const picture of held.splice(0)) picture(now); }", now)
+
+
+def new_page(browser: Any, **options: Any) -> Any:
+    """Return a page in a window of its own that waits as long as it takes."""
+    context = browser.new_context(**options)
+    context.set_default_timeout(1000 * PATIENCE)
+    return context.new_page()
 
 
 class Windows:
@@ -36,7 +78,7 @@ class Windows:
         return page
 
     def _new(self, options: Any) -> Any:
-        page = self._browser.new_context(**options).new_page()
+        page = new_page(self._browser, **options)
         page.on("console", lambda message: self.complaints.append(message.text))
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.on("request", lambda request: self.complaints.append(request.url))

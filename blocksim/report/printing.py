@@ -13,7 +13,7 @@ from blocksim.common.errors import MissingPart
 BROWSERS = ("chromium", "chromium-browser", "chromium-headless-shell", "google-chrome",
             "google-chrome-stable", "chrome", "msedge", "microsoft-edge")  # fmt: skip
 """Commands that print without a window."""
-PATIENCE = 120.0
+PATIENCE = 300.0
 """How long a browser may take [s]."""
 QUIET = ("--headless", "--disable-gpu", "--no-first-run", "--disable-background-networking",
          "--disable-component-update", "--disable-sync", "--no-pdf-header-footer")  # fmt: skip

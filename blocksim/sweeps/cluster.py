@@ -12,7 +12,7 @@ from typing import Any
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError, MissingPart
 
-CONNECT_SECONDS = 10
+CONNECT_SECONDS = 60
 
 
 @contextmanager

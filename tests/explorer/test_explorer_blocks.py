@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from windows import settle
 
 from blocksim import CircularArch, load_structure
 from blocksim.arch import limit
@@ -120,10 +121,10 @@ def test_random_blocks_are_judged_as_by_python(one_page: Any, count: int) -> Non
     assert verdicts == {True, False}
 
 
-def settle(page: Any) -> None:
-    page.evaluate(
-        "() => new Promise((d) => requestAnimationFrame(() => requestAnimationFrame(d)))"
-    )
+def to_own(page: Any) -> None:
+    """Go to the view of any blocks, which the page shows when it hears of its new address."""
+    page.click("#to-own")
+    page.wait_for_selector("#own [data-block]")
 
 
 def told(page: Any) -> str:
@@ -144,7 +145,7 @@ def drag(page: Any, what: str, across: float, down: float) -> None:
 
 
 def test_shipped_structures_stand_in_the_page_as_they_do_in_python(page: Any) -> None:
-    page.click("#to-own")
+    to_own(page)
     for name in SHIPPED:
         page.select_option("#structure", name)
         stands = statics.equilibrium(load_structure(name)).exists
@@ -153,7 +154,7 @@ def test_shipped_structures_stand_in_the_page_as_they_do_in_python(page: Any) ->
 
 
 def test_blocks_load_and_corners_are_dragged_and_the_address_holds_them(page: Any) -> None:
-    page.click("#to-own")
+    to_own(page)
     assert told(page).startswith("Stands")
     before = told(page)
     drag(page, "#own [data-load] .grip", 60, 20)
@@ -176,7 +177,7 @@ def test_blocks_load_and_corners_are_dragged_and_the_address_holds_them(page: An
 
 def test_a_wall_of_ones_own(page: Any) -> None:
     """A block more, on the keyboard; what is fixed cannot fall; the map is still there."""
-    page.click("#to-own")
+    to_own(page)
     page.select_option("#structure", "column")
     before = page.locator("#own [data-block]").count()
     page.click("#add")
