@@ -20,8 +20,6 @@ from blocksim import (
     bracket,
 )
 from blocksim.arch import limit
-from blocksim.arch.circular import Weight
-from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.engines.base import Engine
 from blocksim.simulation.onset import onset
 from blocksim.simulation.simulated import Simulation
@@ -57,7 +55,7 @@ ARCHES: dict[str, list[tuple[Any, ...]]] = {
 
 
 def arch_at(
-    ratio: float, angle: float, mu: float, count: int, weight: Weight = "centreline"
+    ratio: float, angle: float, mu: float, count: int, weight: str = "centreline"
 ) -> Arch:
     """An arch at a ratio of the least thickness of its voussoirs; its half-angle in degrees."""
     alpha = math.radians(angle)
@@ -70,7 +68,7 @@ def bracket_at(
     angle: float,
     mu: float,
     count: int,
-    weight: Weight = "centreline",
+    weight: str = "centreline",
     *,
     method: str,
     tol: float,
@@ -89,7 +87,7 @@ def bracket_at(
 
 def held_in(
     engine: Engine, assembly: Assembly, mu: float, *, sweeps: int
-) -> tuple[Verdict, Array]:
+) -> tuple[Verdict, np.ndarray]:
     """Verdict of the onset test, and the accelerations after so many sweeps more."""
     simulation = Simulation.of(Problem(assembly=assembly, mu=mu), engine)
     world = simulation.world()
@@ -97,7 +95,7 @@ def held_in(
     return seen.verdict, world.hold(sweeps)
 
 
-def box(corner: Array, along: Array, width: float, height: float) -> Block:
+def box(corner: np.ndarray, along: np.ndarray, width: float, height: float) -> Block:
     """A box of unit density whose base starts at `corner` and runs `along`."""
     up = np.array([-along[1], along[0]])
     base, rise = along * width, up * height
@@ -115,5 +113,5 @@ def on_a_slope(angle: float, width: float, height: float) -> Assembly:
     uphill = np.array([math.cos(angle), math.sin(angle)])
     block = box(np.zeros(2), uphill, width, height)
     # Seen from the ground to the block, inner lies to the right: uphill.
-    joint = Joint(before=SUPPORT, after=0, inner=uphill * width, outer=np.zeros(2))
+    joint = Joint(before=-1, after=0, inner=uphill * width, outer=np.zeros(2))
     return Assembly(blocks=(block,), joints=(joint,), size=1.0)

@@ -16,12 +16,11 @@ from numpy.random import Generator
 from scipy.spatial import Voronoi
 
 from blocksim import Assembly, Load, Problem, assembly_of_polygons, collapse, equilibrium
-from blocksim.blocks.assembly import SUPPORT, Array
 
 SEED = 2026
 RANGE = 1e-3, 1e3
 """Load factors of the assemblies that are drawn."""
-Polygons = list[Array]
+Polygons = list[np.ndarray]
 """Of the supports first."""
 
 
@@ -47,13 +46,13 @@ class Sketch:
     """
 
     kind: str
-    polygons: tuple[Array, ...]
+    polygons: tuple[np.ndarray, ...]
     fixed: frozenset[int]
     mu: float
     own: Mapping[frozenset[int], float]
-    force: Array
+    force: np.ndarray
     on: int | None = None
-    point: Array | None = None
+    point: np.ndarray | None = None
 
     def problem(self) -> Problem:
         """Find the joints, and put friction and loads on."""
@@ -79,7 +78,7 @@ def pairs(assembly: Assembly) -> list[frozenset[int]]:
     """Return which polygons each joint of a sketch's assembly is between."""
 
     def of(block: int, support: int | None) -> int:
-        if block != SUPPORT:
+        if block >= 0:
             return int(assembly.blocks[block].name)
         return int(assembly.supports[support or 0].name)
 
@@ -125,12 +124,12 @@ def sketch(kind: str, random: Generator) -> Sketch:
     )
 
 
-def _area(polygon: Array) -> float:
+def _area(polygon: np.ndarray) -> float:
     x, y = polygon.T
     return float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2)
 
 
-def box(left: float, low: float, right: float, high: float) -> Array:
+def box(left: float, low: float, right: float, high: float) -> np.ndarray:
     """Return the corners of a rectangle."""
     return np.array([[left, low], [right, low], [right, high], [left, high]])
 
@@ -191,7 +190,7 @@ def leaning(random: Generator) -> tuple[Polygons, int]:
     up, across = _axes(tilt)
     floor, high = box(-9, -1, 9, 0), 4.0
 
-    def block(foot: float, height: float) -> Array:
+    def block(foot: float, height: float) -> np.ndarray:
         sides = [0 * up, height * up, height * up - thick * across, -thick * across]
         return np.array([foot, 0.0]) + np.array(sides)
 
@@ -212,14 +211,16 @@ def leaning(random: Generator) -> tuple[Polygons, int]:
     return [floor, *pier, *books], 1
 
 
-def _axes(tilt: float) -> tuple[Array, Array]:
+def _axes(tilt: float) -> tuple[np.ndarray, np.ndarray]:
     return (
         np.array([math.sin(tilt), math.cos(tilt)]),
         np.array([math.cos(tilt), -math.sin(tilt)]),
     )
 
 
-def _ring(cuts: Array, inner: Array, outer: Array, flat: float) -> tuple[Polygons, Array]:
+def _ring(
+    cuts: np.ndarray, inner: np.ndarray, outer: np.ndarray, flat: float
+) -> tuple[Polygons, np.ndarray]:
     """Voussoirs between cuts (angles from the crown), and the outer points."""
     out = np.stack([np.sin(cuts), flat * np.cos(cuts)], axis=1)
     low, high = inner[:, None] * out, outer[:, None] * out
@@ -228,7 +229,7 @@ def _ring(cuts: Array, inner: Array, outer: Array, flat: float) -> tuple[Polygon
     ], high
 
 
-def _uneven(random: Generator, first: float, last: float, count: int) -> Array:
+def _uneven(random: Generator, first: float, last: float, count: int) -> np.ndarray:
     parts = np.concatenate([[0.0], np.cumsum(random.uniform(0.5, 1.5, count))])
     return first + (last - first) * parts / parts[-1]
 
@@ -275,7 +276,7 @@ def rubble(random: Generator) -> tuple[Polygons, int]:
     return [*supports, *cells], len(supports)
 
 
-def _cells(points: Array, width: float, height: float) -> Polygons:
+def _cells(points: np.ndarray, width: float, height: float) -> Polygons:
     """Cells of points in a box: their images behind its sides make these the borders."""
     images = [points * [-1, 1], points * [1, -1]]
     images += [[2 * width, 0] + images[0], [0, 2 * height] + images[1]]
@@ -332,7 +333,7 @@ def portal(random: Generator) -> tuple[Polygons, int]:
     cuts = _uneven(random, -half_angle, half_angle, count)
     ones = np.ones(count + 1)
     ring, _ = _ring(cuts, ones - thick / 2, ones + thick / 2, 1.0)
-    base, polygons = -random.uniform(0.3, 1.5), list[Array]()
+    base, polygons = -random.uniform(0.3, 1.5), list[np.ndarray]()
     for side in (-1, 1):
         end = np.array([side * math.sin(half_angle), math.cos(half_angle)])
         low, high = (1 - thick / 2) * end, (1 + thick / 2) * end

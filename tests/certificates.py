@@ -22,8 +22,6 @@ import numpy as np
 from scipy.optimize import linprog
 
 from blocksim import Problem
-from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.blocks.problem import STANDARD_GRAVITY
 
 LEFT = 1e-7
 """Force that may be left unbalanced on a block, over the mean weight."""
@@ -88,8 +86,8 @@ class Edge:
     """
 
     joint: int
-    point: Array
-    force: Array
+    point: np.ndarray
+    force: np.ndarray
     both_ways: bool = False
 
 
@@ -109,7 +107,7 @@ def cone_edges(problem: Problem) -> list[Edge]:
     return edges
 
 
-def balance(problem: Problem, edges: list[Edge]) -> Array:
+def balance(problem: Problem, edges: list[Edge]) -> np.ndarray:
     """Return what each edge does: force x, y and moment on each block, (3 blocks, edges).
 
     Moments are about the blocks' centres, divided by the size of the whole.
@@ -119,17 +117,17 @@ def balance(problem: Problem, edges: list[Edge]) -> Array:
     for column, edge in enumerate(edges):
         joint = assembly.joints[edge.joint]
         for block, sign in ((joint.after, 1.0), (joint.before, -1.0)):
-            if block != SUPPORT:
+            if block >= 0:
                 x, y = (edge.point - assembly.blocks[block].centre) / assembly.size
                 force = sign * edge.force
                 matrix[block, :, column] += [*force, x * force[1] - y * force[0]]
     return matrix.reshape(-1, len(edges))
 
 
-def loads_on(problem: Problem) -> Array:
+def loads_on(problem: Problem) -> np.ndarray:
     """Return force x, y and moment of all loads on each block, (3 blocks,), units as above."""
     blocks = problem.assembly.blocks
-    weights = np.array([block.mass * STANDARD_GRAVITY for block in blocks])
+    weights = np.array([block.mass * 9.81 for block in blocks])
     found = np.zeros((len(blocks), 3))
     found[:, :2] = weights[:, None] * problem.gravity[:2]
     for factor, loads in ((1.0, problem.dead), (problem.load, problem.live)):
@@ -143,7 +141,9 @@ def loads_on(problem: Problem) -> Array:
     return found.ravel() / weights.mean()
 
 
-def unbalanced(matrix: Array, loads: Array, parts: Array, free: Array) -> float:
+def unbalanced(
+    matrix: np.ndarray, loads: np.ndarray, parts: np.ndarray, free: np.ndarray
+) -> float:
     """Return the largest part of the loads that forces along the edges leave.
 
     Parameters
@@ -159,7 +159,7 @@ def unbalanced(matrix: Array, loads: Array, parts: Array, free: Array) -> float:
     return float(np.abs(matrix @ held + loads).max())
 
 
-def needed(matrix: Array, loads: Array, rates: Array, free: Array) -> float:
+def needed(matrix: np.ndarray, loads: np.ndarray, rates: np.ndarray, free: np.ndarray) -> float:
     """Return the weight of all over the sum of contact forces that it takes to hold blocks.
 
     By virtual work forces in equilibrium have as much power on any velocities as the loads, the

@@ -9,11 +9,9 @@ import numpy as np
 from scipy.optimize import brentq, root
 
 from blocksim import Arch, Mode
-from blocksim.arch.circular import Weight
 from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.theory.equations import Value, normal_force, shape
 from blocksim.arch.theory.lines import friction_line, section_moment, thrust_line
-from blocksim.blocks.assembly import Array
 
 
 def lower_thrust(beta: Value, eta: Value) -> Value:
@@ -43,7 +41,7 @@ def tangency_thrust(beta: Value, eta: Value) -> Value:
 
 
 def thrust_line_slope(
-    angle: Value, thrust: Value, crown_moment: Value, eta: Value, weight: Weight = "centreline"
+    angle: Value, thrust: Value, crown_moment: Value, eta: Value, weight: str = "centreline"
 ) -> Value:
     """Differentiate `thrust_line` by the angle, (12)."""
     factor = 1.0 if weight == "centreline" else 1.0 + eta**2 / 12
@@ -64,8 +62,8 @@ def friction_line_slope(angle: Value, thrust: Value, mu: Value) -> Value:
 
 
 def onset_equations(
-    half_angle: float, mu: float, mode: Mode, unknowns: Sequence[float], weight: Weight
-) -> Array:
+    half_angle: float, mu: float, mode: Mode, unknowns: Sequence[float], weight: str
+) -> np.ndarray:
     """Residuals of those of eqs (10)-(14) that a mode fulfils.
 
     Parameters
@@ -107,8 +105,8 @@ def onset_equations(
 
 
 def solve_onset(
-    half_angle: float, mu: float, mode: Mode, start: Sequence[float], weight: Weight
-) -> Array:
+    half_angle: float, mu: float, mode: Mode, start: Sequence[float], weight: str
+) -> np.ndarray:
     """Solve eqs (10)-(14) for a mode, with no use of eqs (1)-(9).
 
     Parameters
@@ -124,14 +122,14 @@ def solve_onset(
         eta, h, m, beta_r and, for an inner sliding joint, beta_s.
     """
 
-    def equations(unknowns: Array) -> Array:
+    def equations(unknowns: np.ndarray) -> np.ndarray:
         return onset_equations(half_angle, mu, mode, unknowns.tolist(), weight)
 
     return np.asarray(root(equations, np.array(start), method="hybr", tol=1e-15).x)
 
 
 def least_thickness_by_program(
-    half_angle: float, mu: float, voussoirs: int, weight: Weight = "centreline"
+    half_angle: float, mu: float, voussoirs: int, weight: str = "centreline"
 ) -> float | None:
     """Least thickness at which the program (16) has the value zero; None if above 2."""
     arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from blocksim import Joint, Load, Problem
-from blocksim.blocks.assembly import SUPPORT, Array, Support
+from blocksim.blocks.assembly import Support
 
 FLIP = np.array([-1.0, 1.0])
 
@@ -51,7 +51,7 @@ def _image(joint: Joint) -> Joint:
 
 
 def _pulled(load: Load) -> Load:
-    point: Array | None = None if load.point is None else load.point * FLIP
+    point: np.ndarray | None = None if load.point is None else load.point * FLIP
     return replace(load, force=load.force * FLIP, point=point)
 
 
@@ -59,7 +59,7 @@ def renumbered(problem: Problem, seed: int) -> Problem:
     """Return the same with blocks, joints and their sides in another order."""
     assembly, random = problem.assembly, np.random.default_rng(seed)
     order = random.permutation(len(assembly.blocks)).tolist()
-    place = {SUPPORT: SUPPORT, **{old: new for new, old in enumerate(order)}}
+    place = {-1: -1, **{old: new for new, old in enumerate(order)}}
     joints: list[Joint] = []
     for index in random.permutation(len(assembly.joints)):
         joint = assembly.joints[index]

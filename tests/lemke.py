@@ -18,13 +18,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from blocksim.blocks.assembly import Array
-
 ZERO = 1e-8
 """Entries of the tableau that are round-off."""
 
 
-def lemke(matrix: Array, constant: Array) -> Array | None:
+def lemke(matrix: np.ndarray, constant: np.ndarray) -> np.ndarray | None:
     """Return z >= 0 with w = matrix z + constant >= 0 and w z = 0; None where a ray is met.
 
     Ties are broken by the lexicographic order of rows, so that no vertex is met twice (Cottle,
@@ -37,7 +35,7 @@ def lemke(matrix: Array, constant: Array) -> Array | None:
     tableau = np.hstack([constant[:, None], np.eye(size), -matrix, -np.ones((size, 1))])
     basis, artificial = np.arange(1, size + 1), 2 * size + 1
 
-    def first(rows: Array, column: Array) -> int:
+    def first(rows: np.ndarray, column: np.ndarray) -> int:
         """Return the row that reaches 0 first; of several that of the artificial variable."""
         for place in range(size + 1):
             ratios = tableau[rows, place] / column[rows]
@@ -69,8 +67,8 @@ def lemke(matrix: Array, constant: Array) -> Array | None:
 
 
 def pivoted(
-    rows: Array, rates: Array, mass: Array, free: Array, mu: Array
-) -> tuple[Array, Array] | None:
+    rows: np.ndarray, rates: np.ndarray, mass: np.ndarray, free: np.ndarray, mu: np.ndarray
+) -> tuple[np.ndarray, np.ndarray] | None:
     """Return accelerations and forces of a step, as `ContactProblem.solve` names them.
 
     Parameters

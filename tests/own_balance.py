@@ -17,7 +17,6 @@ from scipy.spatial import ConvexHull
 from shapely.geometry import MultiPoint, Polygon
 
 from blocksim import Assembly
-from blocksim.blocks.assembly import SUPPORT
 
 SIDES = 64
 """Sides of the pyramids within a cone of friction, and around it: 0.12 % between them."""
@@ -153,7 +152,7 @@ def violation(
     for index, joint in enumerate(joints):
         middle = (joint.inner + joint.outer) / 2
         for body, sign in ((joint.after, 1.0), (joint.before, -1.0)):
-            if body == SUPPORT:
+            if body < 0:
                 continue
             arm = (middle - blocks[body].centre) / assembly.size
             for column, axis in ((0, joint.normal), (1, joint.tangent)):

@@ -9,11 +9,9 @@ from runpy import run_path
 import numpy as np
 import pytest
 
-from blocksim import CircularArch, EllipticArch, Portal, Problem, check
+from blocksim import CircularArch, EllipticArch, Portal, Problem, check, load
 from blocksim.ask.families import family_of
 from blocksim.ask.options import problem_of
-from blocksim.blocks.assembly import Array
-from blocksim.kinds.loading import load_known
 from blocksim.view.placing import distance_of
 from blocksim.view.sheet import answer_sheet
 from blocksim.view.sheetfigure import sheet_figure
@@ -34,7 +32,7 @@ def test_faces_that_left_each_other_are_apart_either_way(
 
 def test_supports_that_have_spread_bear_the_blocks_where_they_are() -> None:
     """Each springing lies on the face of its support, 1 % of the span further apart."""
-    known = load_known("spread_90_12_20").problem
+    known = load("spread_90_12_20")
     moved = family_of(known, "spread").at(0.01)
     for problem, span in ((known, 0.94), (moved, 0.95)):
         left, right = (np.concatenate(each.polygons) for each in problem.assembly.supports)
@@ -46,7 +44,7 @@ def test_supports_that_have_spread_bear_the_blocks_where_they_are() -> None:
 
 
 def test_a_line_of_thrust_leaves_a_gable_along_its_reaction() -> None:
-    sheet = answer_sheet(check(load_known("gable").problem))
+    sheet = answer_sheet(check(load("gable")))
     (safest,) = [each for each in sheet.lines if each.name == "safest"]
     (path,) = safest.paths
     path = path if path[0, 0] < path[-1, 0] else path[::-1]
@@ -80,7 +78,7 @@ def test_the_sketch_points_at_its_line_of_thrust() -> None:
     assert np.hypot(*(line - words.xy).T).min() < 1e-12
 
 
-def mirrored(problem: Problem) -> tuple[Array, Array]:
+def mirrored(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
     """Which block and joint lies where another does in a mirror, by brute force."""
     centres = problem.assembly.built[:-1, :2]
     middles = problem.assembly.joint_arrays.ends.mean(axis=1)
@@ -99,9 +97,9 @@ def thin_portal() -> Problem:
 
 
 SYMMETRIC: dict[str, Callable[[], Problem]] = {
-    "pointed arch": lambda: load_known("pointed_e0_25").problem,
-    "two spans": lambda: load_known("two_spans_load_b9").problem,
-    "upright joints": lambda: load_known("semicircle_vertical_joints").problem,
+    "pointed arch": lambda: load("pointed_e0_25"),
+    "two spans": lambda: load("two_spans_load_b9"),
+    "upright joints": lambda: load("semicircle_vertical_joints"),
     "thin ellipse": lambda: problem_of(
         EllipticArch(span=2.0, rise=0.7, thickness=0.03, voussoirs=21, friction=0.7)
     ),

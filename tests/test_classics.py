@@ -13,19 +13,20 @@ import numpy as np
 import pytest
 
 from blocksim import Problem, Verdict, assembly_of_polygons
-from blocksim.blocks.assembly import Array
 from blocksim.engines import ENGINES
 from blocksim.simulation.observation import observe
 
 FLOOR = np.array([(-20.0, -1.0), (20.0, -1.0), (20.0, 0.0), (-20.0, 0.0)])
 
 
-def box(left: float, low: float, width: float, height: float) -> Array:
+def box(left: float, low: float, width: float, height: float) -> np.ndarray:
     right, high = left + width, low + height
     return np.array([(left, low), (right, low), (right, high), (left, high)])
 
 
-def standing(*blocks: Array, fixed: tuple[Array, ...] = (FLOOR,), mu: float) -> Problem:
+def standing(
+    *blocks: np.ndarray, fixed: tuple[np.ndarray, ...] = (FLOOR,), mu: float
+) -> Problem:
     every = [*fixed, *blocks]
     return Problem(assembly=assembly_of_polygons(every, fixed=range(len(fixed))), mu=mu)
 

@@ -21,9 +21,9 @@ from blocksim import (
     InputError,
     Problem,
     Verdict,
-    ask,
     assembly_of_polygons,
     bracket,
+    check,
     structure_of,
 )
 from blocksim.blocks import regions
@@ -90,7 +90,7 @@ def test_a_wall_of_few_decimals_is_answered(tmp_path: Path, degrees: int, decima
 
 def _answers(degrees: int, decimals: int) -> tuple[Verdict, int]:
     problem = structure_of(drawn(bricks(4, 4), degrees, decimals))
-    return ask.check(problem, method="limit").verdict, len(problem.assembly.joints)
+    return check(problem, method="limit").verdict, len(problem.assembly.joints)
 
 
 @pytest.mark.long
@@ -246,6 +246,6 @@ def test_engines_say_what_closing_can_do(method: str):
     bed = [(-1.0, -0.2), (0.1231, -0.2), (0.1231, 0.0), (-1.0, 0.0)]
     brick = [(0.0, 0.003), (0.25, 0.003), (0.25, 0.128), (0.0, 0.128)]
     problem = structure_of(drawn([bed, brick], 0.0, 15, tolerance=0.005))
-    found = ask.check(problem, method=method)
+    found = check(problem, method=method)
     assert found.verdict is Verdict.COLLAPSES
     assert "leaves it open: stands with blocks grown" in found.reason

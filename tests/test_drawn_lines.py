@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from running import inside
 
-from blocksim import InputError, ask, load_structure
+from blocksim import InputError, bracket, check, load_structure
 from blocksim.reading.asked import Reading
 from blocksim.reading.curves import arc, bezier, ellipse
 from blocksim.reading.loops import loops_of
@@ -76,7 +76,7 @@ def test_a_pointed_rib_by_lines_and_arcs_weighs_what_it_does(tmp_path: Path) -> 
     assert weight == pytest.approx(22e3 * 0.3 * area, rel=1e-12)
     assert any("areas are exact" in note for note in problem.notes)
     assert any("1 TEXT on layer Maße" in note for note in problem.notes)
-    up = [each.force[1] for each in ask.check(problem).carried.reactions]  # type: ignore[union-attr]
+    up = [each.force[1] for each in check(problem).carried.reactions]  # type: ignore[union-attr]
     assert up == pytest.approx([weight / 2] * 2, rel=1e-9)
 
 
@@ -123,7 +123,7 @@ def test_bricks_with_mortar_are_joined_across_it(tmp_path: Path, mortar: float) 
     assert len(problem.assembly.joints) == 8
     # Joints lie midway in the mortar: the lowest one is half of it below the bricks.
     lever = (7 * high + 65) / 2 + 500 * mortar
-    found = ask.bracket(ask.family_of(problem, "tilt")).limit
+    found = bracket(problem, over="tilt").limit
     assert found == pytest.approx(math.degrees(math.atan(120 / lever)), rel=1e-6)
 
 

@@ -14,7 +14,6 @@ from PIL import Image
 
 import blocksim
 from blocksim import JointState, Problem, Recording
-from blocksim.blocks.assembly import Array
 from blocksim.blocks.shaking import Shaking
 from blocksim.engines.base import Quality, Settings
 from blocksim.view.drawing import words_of
@@ -26,7 +25,7 @@ from blocksim.view.video import render, to_bytes
 HEIGHT = 300
 
 
-def recorded(problem: Problem, moved: Array, times: Array) -> Recording:
+def recorded(problem: Problem, moved: np.ndarray, times: np.ndarray) -> Recording:
     """Motion given by displacements of blocks, (frames, blocks, 3) [size]."""
     return Recording(
         problem=problem, engine="direct", engine_version="0",
@@ -57,7 +56,7 @@ def filmed(run: Recording, path: Path) -> tuple[Film, list[NDArray[np.uint8]]]:
     return film, frames
 
 
-def seen_at(film: Film, number: int, points: Array) -> Array:
+def seen_at(film: Film, number: int, points: np.ndarray) -> np.ndarray:
     """Columns and rows of points of space in a frame."""
     seconds = film._within((number / film.rate - 0.8) / film.slow)
     (view,) = film._views

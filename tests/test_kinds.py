@@ -30,7 +30,6 @@ from blocksim import (
 from blocksim.blocks import structure
 from blocksim.blocks.entries import AROUND
 from blocksim.blocks.polygons import assembly_of_bodies
-from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.record import from_record, to_record
 from blocksim.common.fields import fields_of
 from blocksim.kinds import KINDS
@@ -140,7 +139,7 @@ def test_a_column_overturns_about_its_base() -> None:
     assert not equilibrium(column.tilted(tilt * (1 + 1e-6))).exists
     tapered = structure_of({"kind": "column", "friction": 0.7, "top_width": 0.6})
     masses = np.array([block.mass for block in tapered.assembly.blocks])
-    assert masses.sum() * STANDARD_GRAVITY == pytest.approx(0.8 * 3.6, rel=1e-12)
+    assert masses.sum() * 9.81 == pytest.approx(0.8 * 3.6, rel=1e-12)
     # Its middle is at (w + 2 v) / (w + v) h / 3.
     height = (masses @ tapered.assembly.centres[:, 1]) / masses.sum()
     assert height == pytest.approx((1 + 1.2) / 1.6 * 3.6 / 3, rel=1e-12)
@@ -379,7 +378,7 @@ def test_rubble_fills_its_wall_and_follows_its_seed() -> None:
     assert to_record(one) == to_record(again)
     assert one.assembly.centres[0] != pytest.approx(other.assembly.centres[0])
     for each in (one, other):
-        weight = sum(block.mass for block in each.assembly.blocks) * STANDARD_GRAVITY
+        weight = sum(block.mass for block in each.assembly.blocks) * 9.81
         assert weight == pytest.approx(2.0, rel=1e-12)
         corners = np.concatenate([block.vertices for block in each.assembly.blocks])
         assert corners.min(axis=0) == pytest.approx([0, 0], abs=1e-12)

@@ -25,8 +25,6 @@ from blocksim import (
     equilibrium,
     structure_of,
 )
-from blocksim.ask.families import family_of
-from blocksim.blocks.assembly import SUPPORT
 from blocksim.engines import ENGINES
 from blocksim.simulation.merging import Merging
 from blocksim.simulation.observation import hold, observe
@@ -207,7 +205,7 @@ def test_any_guess_is_corrected(name: str, share: float) -> None:
     joints = problem.assembly.joint_arrays
     owner = np.arange(len(problem.assembly.blocks))
     for before, after in zip(joints.before.tolist(), joints.after.tolist(), strict=True):
-        if SUPPORT not in (before, after):
+        if -1 not in (before, after):
             owner[owner == owner[before]] = owner[after]
     wrong = Merging(problem, np.unique(owner, return_inverse=True)[1])
     held, every = (hold(problem, "direct", reduction=each) for each in (wrong, None))
@@ -286,9 +284,10 @@ def test_by_default_impulse_engines_are_given_few_bodies() -> None:
 
 
 def test_a_bracket_is_that_of_all_blocks() -> None:
-    family = family_of(structure_of(scenes("oppenheim_28")[0]), "load")
+    problem = structure_of(scenes("oppenheim_28")[0])
     few, every = (
-        bracket(family, method="pymunk", tol=2e-3, reduce=reduce) for reduce in (True, False)
+        bracket(problem, over="load", method="pymunk", tol=2e-3, reduce=reduce)
+        for reduce in (True, False)
     )
     exact = case("oppenheim_28")["expected"]["value"]
     for each in (few, every):

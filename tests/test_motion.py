@@ -10,7 +10,6 @@ from arches import arch_at
 from structure_cases import case, scenes
 
 from blocksim import CircularArch, Problem, Verdict, structure_of
-from blocksim.blocks.assembly import Array
 from blocksim.engines.base import Quality, Settings
 from blocksim.simulation.motion import EARLY, FINER, MOVED, QUIET, moving_run
 from blocksim.simulation.observation import hold, observe
@@ -29,7 +28,7 @@ class Creeping:
     settings: Settings
     time: float = field(default=0.0, init=False)
 
-    def hold(self, sweeps: int) -> Array:
+    def hold(self, sweeps: int) -> np.ndarray:
         """Rest."""
         del sweeps
         return np.zeros((len(self.problem.assembly.blocks), 3))
@@ -38,7 +37,7 @@ class Creeping:
         """Creep on."""
         self.time += steps * self.settings.step
 
-    def poses(self) -> Array:
+    def poses(self) -> np.ndarray:
         """Move along x."""
         assembly = self.problem.assembly
         poses = np.column_stack([assembly.centres / assembly.size, self.hold(0)[:, 0]])

@@ -26,7 +26,6 @@ from blocksim import (
     equilibrium,
 )
 from blocksim.ask.doctor import examine
-from blocksim.blocks.assembly import Array
 from blocksim.engines import get_engine
 from blocksim.engines.base import TakesForces
 from blocksim.engines.mujocoblocks import library
@@ -41,7 +40,7 @@ pytest.importorskip("mujoco", exc_type=ImportError)
 SIDES = [(0.995, Verdict.COLLAPSES), (1.005, Verdict.STANDS)]
 
 
-def held(assembly: Assembly, mu: float) -> tuple[Verdict, Array]:
+def held(assembly: Assembly, mu: float) -> tuple[Verdict, np.ndarray]:
     return held_in(get_engine("mujoco"), assembly, mu, sweeps=1000)
 
 

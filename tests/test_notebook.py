@@ -20,7 +20,7 @@ import pytest
 from running import inside
 
 import blocksim
-from blocksim import Arch, CircularArch, ask, collapse, load_structure, structure_of
+from blocksim import Arch, CircularArch, bracket, check, collapse, load_structure, structure_of
 from blocksim.notebook import svg_of
 
 with warnings.catch_warnings():
@@ -46,7 +46,7 @@ def shown() -> dict[str, Any]:
         "arch": ARCH,
         "problem": problem,
         "arch check": blocksim.check(CircularArch.of(THIN, friction=0.7)),
-        "check": ask.check(problem.with_load(0.45)),
+        "check": check(problem.with_load(0.45)),
         "arch bracket": blocksim.bracket(
             CircularArch(
                 half_angle=ARCH.half_angle,
@@ -57,7 +57,7 @@ def shown() -> dict[str, Any]:
             ),
             method="limit",
         ),
-        "bracket": ask.bracket(ask.family_of(problem, "tilt")),
+        "bracket": bracket(problem, over="tilt"),
         "recording": blocksim.simulate(
             CircularArch.of(THIN, friction=0.7), method="direct", duration=0.5
         ),
@@ -236,7 +236,7 @@ def test_reprs_are_short_whatever_they_are_of() -> None:
     titled = replace(CircularArch.of(arch, third).problem(), title="a\nb " * 50)
     assert len(repr(titled)) < 200
     assert "\n" not in repr(titled)
-    assert len(repr(replace(ask.check(load_structure("oppenheim_7")), problem=titled))) < 200
+    assert len(repr(replace(check(load_structure("oppenheim_7")), problem=titled))) < 200
 
 
 def test_importing_blocksim_draws_nothing() -> None:

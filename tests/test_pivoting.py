@@ -16,7 +16,6 @@ from test_contact import chain, dense, step_of
 
 from blocksim import Arch, CircularArch, Problem, collapse, equilibrium
 from blocksim.arch import limit
-from blocksim.blocks.assembly import Array
 from blocksim.engines.contact import ContactProblem
 from blocksim.engines.direct import ENGINE, Blocks
 from tests.assemblies import drawn
@@ -26,8 +25,10 @@ SIDES = (0.9, 0.999, 1.001, 1.1)
 
 
 def compared(
-    joints: tuple[Array, Array], step: tuple[Array, Array, Array, Array], mu: Array
-) -> tuple[Array, Array, bool]:
+    joints: tuple[np.ndarray, np.ndarray],
+    step: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray],
+    mu: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, bool]:
     """Accelerations by both, and whether they are the same; that each is a solution."""
     mass, rows, rates, free = step
     found = ContactProblem(*joints, mass, mu).solve(rows, rates, free, None, 1e-14)
@@ -40,12 +41,20 @@ def compared(
     return found.acceleration, other[0], apart < SAME * max(1.0, np.abs(other[0]).max())
 
 
-def released(problem: Problem, monkeypatch: pytest.MonkeyPatch) -> tuple[Array, Array, bool]:
+def released(
+    problem: Problem, monkeypatch: pytest.MonkeyPatch
+) -> tuple[np.ndarray, np.ndarray, bool]:
     """Compare the step that the engine's onset test asks for."""
-    asked: list[tuple[Array, Array, Array]] = []
+    asked: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
     solve = ContactProblem.solve
 
-    def kept(self: ContactProblem, rows: Array, rates: Array, free: Array, *more: object):
+    def kept(
+        self: ContactProblem,
+        rows: np.ndarray,
+        rates: np.ndarray,
+        free: np.ndarray,
+        *more: object,
+    ):
         asked.append((rows, rates, free))
         return solve(self, rows, rates, free, *more)
 

@@ -31,8 +31,7 @@ from blocksim import (
     structure_of,
 )
 from blocksim import simulate as simulate_problem
-from blocksim.arch.circular import Weight
-from blocksim.blocks.assembly import SPATIAL, Array
+from blocksim.blocks.assembly import SPATIAL
 from blocksim.engines.base import Engine
 from blocksim.simulation.motion import lie_still
 from blocksim.simulation.observation import hold, observe
@@ -53,7 +52,7 @@ def within(frame: Frame) -> Engine:
     return replace(ENGINE, build=partial(Bodies, frame=frame))
 
 
-def held(assembly: Assembly, mu: float, engine: Engine = ENGINE) -> tuple[Verdict, Array]:
+def held(assembly: Assembly, mu: float, engine: Engine = ENGINE) -> tuple[Verdict, np.ndarray]:
     return held_in(engine, assembly, mu, sweeps=5000)
 
 
@@ -73,7 +72,7 @@ def test_where_the_arch_stands_does_not_matter(
     angle: float,
     mu: float,
     count: int,
-    weight: Weight,
+    weight: str,
     mode: Mode,
     ratio: float,
     expected: Verdict,
@@ -130,7 +129,7 @@ def test_walls(name: str, share: float, expected: Verdict) -> None:
     assert seen.verdict is expected, seen.reason
 
 
-def off_ends(world: Bodies, assembly: Assembly) -> Array:
+def off_ends(world: Bodies, assembly: Assembly) -> np.ndarray:
     """Distances in the plane from each end of a joint to each point of contact."""
     places = np.array([contact.place[:2] for contact in world._space.contacts()])
     ends = assembly.joint_arrays.ends.reshape(-1, 2)
@@ -259,7 +258,7 @@ def test_a_block_on_its_head_lies_still() -> None:
     """Turned by half a turn it may be seen as turned either way, and would rock in numbers."""
     world = Bodies(CircularArch.of(THIN, 0.6).problem(), ENGINE.rule(THIN.assembly()))
     body, place = world._bodies[0], world._parts.states[0].place
-    poses: list[Array] = []
+    poses: list[np.ndarray] = []
     for angle in [*np.arange(0.0, math.pi, 0.1), *[math.pi + 1e-4, math.pi - 1e-4] * 30]:
         turn = Rotation.from_rotvec([0.0, 0.0, angle]).as_quat().tolist()
         world._space.put(body, State(place, turn))

@@ -27,7 +27,7 @@ from drawn import (
 )
 from running import inside
 
-from blocksim import InputError, Problem, ask, load_structure, structure_of
+from blocksim import InputError, Problem, bracket, check, load_structure, structure_of
 from blocksim.reading.asked import Reading
 
 WALL = wall()
@@ -45,8 +45,8 @@ def corners(problem: Problem) -> list[np.ndarray]:
 def answers(problem: Problem) -> np.ndarray:
     """Tilt at which it falls [deg], and its least friction tilted by 20 deg."""
     tilted = problem.tilted(math.radians(20))
-    asked = ask.family_of(problem, "tilt"), ask.family_of(tilted, "mu")
-    return np.array([ask.bracket(each).limit for each in asked])
+    asked = bracket(problem, over="tilt"), bracket(tilted, over="mu")
+    return np.array([each.limit for each in asked])
 
 
 @pytest.fixture(scope="module")
@@ -332,7 +332,7 @@ def test_least_friction_of_the_bridge_of_compas_cra(tmp_path: Path) -> None:
     for block in table["blocks"]:
         if int(block["id"]) >= 11:
             block["weight"] = 3.51 * weights[block["id"]]
-    found = ask.bracket(ask.family_of(structure_of(table), "mu")).limit
+    found = bracket(structure_of(table), over="mu").limit
     assert found == pytest.approx(0.06956349629, rel=2e-8)
 
 
@@ -352,7 +352,7 @@ def test_a_converted_drawing_is_the_same_problem(tmp_path: Path, told: np.ndarra
     out.write_text(json.dumps(table))
     assert json.loads(inside("check", str(out), "--json").stdout)["load_factor"] == (
         pytest.approx(
-            ask.check(structure_of(structure(WALL) | {"live": table["live"]})).load_factor
+            check(structure_of(structure(WALL) | {"live": table["live"]})).load_factor
         )
     )
 

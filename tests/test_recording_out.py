@@ -20,7 +20,7 @@ from PIL import Image
 from running import inside
 from windows import new_page
 
-from blocksim import Recording, ask, load_recording, structure_of
+from blocksim import Recording, load_recording, simulate, structure_of
 from blocksim.view.models import write_model
 
 HERE = Path(__file__).parent / "gltf"
@@ -44,7 +44,7 @@ NAMES = ["low", "ell", "last, top"]
 def fall() -> Recording:
     """It topples to the right and turns by more than half a turn before it lies."""
     problem = structure_of(STACK).tilted(math.radians(30))
-    return ask.simulate(problem, method="direct", duration=2.0 / problem.seconds)
+    return simulate(problem, method="direct", duration=2.0 / problem.seconds)
 
 
 @pytest.fixture(scope="module")

@@ -22,7 +22,6 @@ from blocksim import (
     load_recording,
     structure_of,
 )
-from blocksim.blocks.assembly import SUPPORT
 from blocksim.blocks.road import fill_of, on_road, with_fill, with_road
 
 HEAVY, FILL = 22_000.0, 18_000.0
@@ -58,9 +57,9 @@ def reaction(problem: Problem) -> np.ndarray:
     assert forces is not None
     total = np.zeros(3)
     for joint, ends in zip(problem.assembly.joints, forces, strict=True):
-        if SUPPORT not in (joint.before, joint.after):
+        if -1 not in (joint.before, joint.after):
             continue
-        side = 1.0 if joint.before == SUPPORT else -1.0
+        side = 1.0 if joint.before < 0 else -1.0
         for point, (normal, tangent) in zip((joint.inner, joint.outer), ends, strict=True):
             x, y = side * problem.unit_force * (normal * joint.normal + tangent * joint.tangent)
             total += [x, y, point[0] * y - point[1] * x]

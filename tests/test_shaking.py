@@ -24,14 +24,13 @@ from blocksim import (
     Verdict,
     bracket,
     check,
+    load,
     load_recording,
     structure_of,
     sweep,
 )
-from blocksim.ask.families import family_of
 from blocksim.blocks.shaking import SHAPES, Shaking, table_of
 from blocksim.blocks.structure import structure_record
-from blocksim.kinds.loading import load_known
 from blocksim.simulation.shaken import Shaken, shake
 from blocksim.sweeps import load_design, read_rows
 
@@ -85,7 +84,7 @@ def pushed(problem: Problem, amplitude: float) -> Shaken:
 
 def test_oppenheims_arch_falls_in_pymunk_where_statics_says() -> None:
     """0.37053 g by limit analysis."""
-    arch = replace(load_known("oppenheim_7").problem, live=(), mu=0.8)
+    arch = replace(load("oppenheim_7"), live=(), mu=0.8)
     stands, falls = (pushed(arch, 0.37053 * share) for share in (0.98, 1.02))
     assert stands.verdict is Verdict.STANDS
     assert stands.recording.displacement.max() < 1e-6
@@ -246,8 +245,8 @@ def test_a_recording_carries_its_shaking_and_says_what_rocked(
 def test_an_amplitude_is_bracketed(method: str, confirm: bool) -> None:
     """Corpus: a pulse of 0.5 g has to last 0.3677 s, so one of that duration 0.5 g."""
     problem = shaken("pulse_1x4_05", 1.0)
-    family = family_of(problem, "amplitude")
-    found = bracket(family, method=method, tol=0.05, confirm=confirm)
+    asked = {"over": "amplitude", "method": method, "tol": 0.05, "confirm": confirm}
+    found = bracket(problem, **asked)
     assert found.confirmed is (True if confirm else None)
     assert found.low is not None
     assert found.high is not None
@@ -256,11 +255,11 @@ def test_an_amplitude_is_bracketed(method: str, confirm: bool) -> None:
     assert found.high / found.low < 1.06
     assert (found.stands, found.limit) == ("low", None)
     # A range in which it stands all over, although it starts with 0.5 g.
-    less = bracket(family, method="pymunk", within=(0.0, 1e-4))
+    less = bracket(problem, over="amplitude", method="pymunk", within=(0.0, 1e-4))
     assert (less.low, less.high) == (1e-4, None)
     still = structure_of(scenes("pulse_1x4_05")[0])
     with pytest.raises(InputError, match="the ground is at rest"):
-        family_of(still, "amplitude")
+        bracket(still, over="amplitude")
 
 
 @pytest.mark.usefixtures("in_this_process")

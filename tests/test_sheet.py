@@ -26,7 +26,6 @@ from blocksim import (
     load_structure,
     structure_of,
 )
-from blocksim.blocks.assembly import Array
 from blocksim.kinds.offers import carried_of
 from blocksim.view.drawing import outline, save_figure
 from blocksim.view.sheet import Sheet, answer_sheet, scale_for, scale_words, sheet_of
@@ -93,7 +92,7 @@ def drawn(name: str) -> tuple[Sheet, Figure]:
     return sheet, sheet_figure(sheet)
 
 
-def lines(figure: Figure, gid: str) -> list[Array]:
+def lines(figure: Figure, gid: str) -> list[np.ndarray]:
     """Points of all lines with a gid, in metres."""
     return [
         np.column_stack(each.get_data())
@@ -111,14 +110,14 @@ def legend(figure: Figure) -> set[str]:
     return {text.get_text() for each in figure.legends for text in each.get_texts()}
 
 
-def cross(one: Array, other: Array) -> float:
+def cross(one: np.ndarray, other: np.ndarray) -> float:
     return float(one[0] * other[1] - one[1] * other[0])
 
 
-def at_joints(line: Array, problem: Problem) -> tuple[Array, dict[int, Array]]:
+def at_joints(line: np.ndarray, problem: Problem) -> tuple[np.ndarray, dict[int, np.ndarray]]:
     """Points of a line on the joints of an arch, in order, and where it bends within blocks."""
-    crossed: list[Array] = []
-    bends: dict[int, Array] = {}
+    crossed: list[np.ndarray] = []
+    bends: dict[int, np.ndarray] = {}
     for point in line:
         joint = problem.assembly.joints[min(len(crossed), len(problem.assembly.blocks))]
         if abs(float((point - joint.inner) @ joint.normal)) < 1e-9:
@@ -367,7 +366,7 @@ def read(sheet: Sheet, tmp_path: Path) -> Any:
     return ezdxf.readfile(path)
 
 
-def polygons(document: Any, layer: str) -> list[Array]:
+def polygons(document: Any, layer: str) -> list[np.ndarray]:
     found = document.modelspace().query(f'LWPOLYLINE[layer=="{layer}"]')
     return [np.array([(x, y) for x, y, *_ in each.get_points()]) for each in found]
 

@@ -15,7 +15,6 @@ from scipy.optimize import brentq
 from structure_cases import case
 
 from blocksim import InputError, JointState, bracket, load_recording, structure_of
-from blocksim.ask.families import family_of
 from blocksim.ask.spread import Spreading
 from blocksim.blocks.joints import joint_motion
 from blocksim.blocks.structure import structure_record
@@ -324,7 +323,7 @@ def test_hinges_of_a_segment_migrate() -> None:
 def test_what_cannot_be_asked_is_refused() -> None:
     wall = structure_of({"kind": "wall", "friction": 0.7})
     with pytest.raises(InputError, match="what moves has to be said"):
-        family_of(wall, "spread")
+        bracket(wall, over="spread")
     arch = structure_of(semicircle(0.15))
     with pytest.raises(InputError, match="limit or direct: others move no supports"):
         bracket(arch, over="spread", method="pymunk")

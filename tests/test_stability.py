@@ -13,7 +13,6 @@ import pytest
 
 from blocksim import Arch, Assembly, CircularArch, Problem, Verdict
 from blocksim.arch.limit import least_thickness
-from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import overlap_and_slip
 from blocksim.engines.base import Quality
 from blocksim.simulation import motion
@@ -165,7 +164,7 @@ class Drifting:
     def advance(self, steps: int) -> None:
         self._steps += steps
 
-    def poses(self) -> Array:
+    def poses(self) -> np.ndarray:
         moved = self._start.copy()
         moved[0, 1] -= self._way * (1 - math.exp(-self._steps))
         return moved

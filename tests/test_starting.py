@@ -14,7 +14,6 @@ from running import inside as blocksim
 from blocksim import Arch, CircularArch, InputError, Problem, check, equilibrium, structure_of
 from blocksim.arch.limit.statics import least_thickness
 from blocksim.ask.rest import FAR, SPEED, let_go
-from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.structure import structure_record
 from blocksim.limit.starting import Start, may_start, rates_of
 from blocksim.view.sheet import answer_sheet
@@ -175,7 +174,7 @@ def test_elsewhere_there_is_no_band(alpha: float, mu: float) -> None:
 def beside(problem: Problem, weight: float) -> Problem:
     """The same with a block at rest on ground of its own, of so many times its weight."""
     table = structure_record(problem)
-    total = sum(block.mass for block in problem.assembly.blocks) * STANDARD_GRAVITY
+    total = sum(block.mass for block in problem.assembly.blocks) * 9.81
     table["blocks"] += [
         {"id": "bed", "vertices": [[9, -6], [10, -6], [10, -5], [9, -5]], "fixed": True},
         {

@@ -27,7 +27,6 @@ from blocksim import (
     equilibrium,
     structure_of,
 )
-from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.road import fill_of
 from blocksim.view import sheetlayout
 from blocksim.view.arrows import force_words, pressures_of
@@ -71,7 +70,7 @@ def of(figure: Figure, kind: str) -> dict[int, Any]:
     }
 
 
-def line_of(artist: Any) -> Array:
+def line_of(artist: Any) -> np.ndarray:
     """Start and end of a bar or an arrow."""
     if isinstance(artist, FancyArrowPatch):
         return np.array(artist._posA_posB)
@@ -177,7 +176,7 @@ def test_thrust_in_a_stack_is_the_weight_above() -> None:
         x, y = np.column_stack(places[index].get_data())[0]
         assert x == pytest.approx(np.average(centres[above], weights=weights[above]), abs=1e-7)
         assert y == pytest.approx(joint.inner[1])
-        if SUPPORT in (joint.before, joint.after):
+        if -1 in (joint.before, joint.after):
             # From the support an arrow, up, to where it acts.
             assert isinstance(drawn[index], FancyArrowPatch)
             assert line[1] == pytest.approx([x, y])

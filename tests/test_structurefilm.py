@@ -13,8 +13,6 @@ import pytest
 from structure_cases import scenes
 
 from blocksim import JointState, Problem, Recording, structure_of
-from blocksim.arch.circular import GRAVITY
-from blocksim.blocks.assembly import Array
 from blocksim.engines.base import Settings
 from blocksim.view.canvas import stone_tones
 from blocksim.view.film import Film
@@ -52,12 +50,12 @@ def yard(**more: Any) -> Problem:
     return structure_of({"title": "A yard", "friction": 0.6, "blocks": blocks, **more})
 
 
-def rest(problem: Problem) -> Array:
+def rest(problem: Problem) -> np.ndarray:
     assembly = problem.assembly
     return np.column_stack([assembly.centres / assembly.size, np.zeros(len(assembly.blocks))])
 
 
-def recording(problem: Problem, moved: Array) -> Recording:
+def recording(problem: Problem, moved: np.ndarray) -> Recording:
     """Record given displacements at equal times up to 1."""
     return Recording(
         problem=problem,
@@ -91,7 +89,7 @@ def view_of(film: Film) -> PlanarView:
     return view
 
 
-def pixel(film: Film, frame: Array, point: Array) -> Array:
+def pixel(film: Film, frame: np.ndarray, point: np.ndarray) -> np.ndarray:
     """Colour of a frame at a point in units of the size."""
     x, y = view_of(film)._to_pixels(np.asarray(point))
     return frame[film.height - 1 - int(y), int(x), :3].astype(int)
@@ -265,7 +263,7 @@ def test_lengths_are_in_metres_and_times_in_seconds_even_where_the_size_is_1() -
     assert problem.assembly.size == 1
     film = Film([recording(problem, np.zeros((2, 1, 3)))])
     words = drawn_words(film)
-    assert f"t = {math.sqrt(1 / GRAVITY):.3f} s" in words
+    assert f"t = {math.sqrt(1 / 9.81):.3f} s" in words
     assert "0.5 m" in words
     assert next(word for word in words if "direct" in word).startswith("at rest   direct")
 

@@ -22,8 +22,6 @@ from running import inside
 from scipy.spatial.transform import Rotation
 
 from blocksim import Arch, CircularArch, InputError, JointState, Recording, load_recording
-from blocksim.arch.circular import GRAVITY
-from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import classify
 from blocksim.engines.base import Settings
 from blocksim.engines.ground import DEPTH
@@ -39,12 +37,12 @@ from blocksim.view.video import render
 ARCH = Arch(half_angle=math.pi / 2, eta=0.3, voussoirs=6, radius=2.0, depth=1.0)
 
 
-def rest(arch: Arch = ARCH) -> Array:
+def rest(arch: Arch = ARCH) -> np.ndarray:
     assembly = arch.assembly()
     return np.column_stack([assembly.centres / assembly.size, np.zeros(arch.voussoirs)])
 
 
-def recording(moved: Array, times: Array, arch: Arch = ARCH) -> Recording:
+def recording(moved: np.ndarray, times: np.ndarray, arch: Arch = ARCH) -> Recording:
     """Record given displacements, (frames, blocks, 3)."""
     return Recording(
         problem=CircularArch.of(arch, 0.7).problem(),
@@ -56,7 +54,7 @@ def recording(moved: Array, times: Array, arch: Arch = ARCH) -> Recording:
     )
 
 
-def turned_about(point: Array, angle: float, blocks: list[int]) -> Array:
+def turned_about(point: np.ndarray, angle: float, blocks: list[int]) -> np.ndarray:
     """Displacements of blocks that turn as one piece about a point."""
     moved = np.zeros((ARCH.voussoirs, 3))
     spin = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
@@ -199,7 +197,7 @@ def test_least_motion_is_absolute_where_given() -> None:
     assert classify(ARCH.assembly(), rest() + slid, least=3e-3)[3].state is JointState.CLOSED
 
 
-def boxes(centres: Array, half: Array) -> tuple[Array, Array, Array]:
+def boxes(centres: np.ndarray, half: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Corners, normals and offsets of axis-parallel boxes."""
     signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     corners = centres[:, None] + signs * half[:, None]
@@ -208,7 +206,7 @@ def boxes(centres: Array, half: Array) -> tuple[Array, Array, Array]:
     return corners, np.broadcast_to(normals, (len(centres), 6, 3)), offsets
 
 
-def entry(start: Array, way: Array, low: Array, high: Array) -> float:
+def entry(start: np.ndarray, way: np.ndarray, low: np.ndarray, high: np.ndarray) -> float:
     """Where a ray enters a box; inf where it misses (slab method)."""
     with np.errstate(divide="ignore"):
         one, two = (low - start) / way, (high - start) / way
@@ -279,7 +277,7 @@ def test_frames_depend_on_the_recording_alone(view: str, tmp_path: Path) -> None
 
 def test_slow_motion_and_length() -> None:
     """The release shows for 0.8 s, the end for 1.2 s, the motion as many times slower."""
-    seconds = Stage(falling()).end * math.sqrt(2.0 / GRAVITY)
+    seconds = Stage(falling()).end * math.sqrt(2.0 / 9.81)
     film = Film([falling()], slow=10, rate=20, height=240)
     assert film.seconds == pytest.approx(seconds, rel=1e-12)
     assert film.count == 1 + round(20 * (2.0 + 10 * seconds))
@@ -297,7 +295,7 @@ def test_side_by_side_has_one_clock_and_one_scale() -> None:
     left, right = np.split(both.frame(0)[60:330, :, :3], 2, axis=1)
     # The same arch at rest on both sides of the dividing line.
     assert np.abs(left[:, 4:].astype(int) - right[:, 4:]).mean() < 1
-    assert alone.seconds == pytest.approx(10 * math.sqrt(2.0 / GRAVITY))
+    assert alone.seconds == pytest.approx(10 * math.sqrt(2.0 / 9.81))
 
 
 def test_mp4_can_be_read_back(tmp_path: Path) -> None:

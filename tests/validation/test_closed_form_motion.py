@@ -8,7 +8,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from blocksim import Assembly, Block, Joint, Problem
-from blocksim.blocks.assembly import SUPPORT
 from blocksim.engines.direct import ENGINE, Blocks
 
 STEPS = (0.02, 0.01, 0.005, 0.0025)
@@ -29,7 +28,7 @@ def standing_block(width, height, slope=0.0):
     )
     # A wide joint would end where the block does: the plane ends there too, which a slide
     # shorter than the block does not notice.
-    joint = Joint(before=SUPPORT, after=0, inner=right, outer=left)
+    joint = Joint(before=-1, after=0, inner=right, outer=left)
     return Assembly(blocks=(block,), joints=(joint,), size=1.0), along
 
 
@@ -96,9 +95,9 @@ def test_two_bars_collapse_as_their_feet_slide_apart():
         for bar in (left, right)
     )
     joints = (
-        Joint(before=SUPPORT, after=0, inner=left[1], outer=left[0]),
+        Joint(before=-1, after=0, inner=left[1], outer=left[0]),
         Joint(before=0, after=1, inner=left[2], outer=left[3]),
-        Joint(before=1, after=SUPPORT, inner=right[2], outer=right[3]),
+        Joint(before=1, after=-1, inner=right[2], outer=right[3]),
     )
     assembly = Assembly(blocks=bars, joints=joints, size=1.0)
     top, foot = left[3] - left.mean(axis=0), left[1] - left.mean(axis=0)

@@ -19,7 +19,6 @@ from own_balance import violation
 from scipy.optimize import brentq
 
 from blocksim import Assembly, Block, Joint, Problem, Verdict
-from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.engines import ENGINES, get_engine
 from blocksim.simulation.motion import LONGEST, MOVED, QUIET
 from blocksim.simulation.onset import onset
@@ -95,7 +94,7 @@ def holds_both_sides(verdict: Callable[[float], Verdict]) -> None:
     assert verdict(ABOVE) is Verdict.COLLAPSES
 
 
-def polygon(corners: list[Array] | Array, depth: float = 1.0) -> Block:
+def polygon(corners: list[np.ndarray] | np.ndarray, depth: float = 1.0) -> Block:
     """A homogeneous block of unit density; corners counter-clockwise."""
     here = np.array(corners)
     there = np.roll(here, -1, axis=0)
@@ -129,7 +128,7 @@ def stack(
         Joint(before=level - 1, after=level, inner=levels[level] + across, outer=levels[level])
         for level in range(count)
     ]
-    assert joints[0].before == SUPPORT
+    assert joints[0].before < 0
     return Assembly(blocks=tuple(blocks), joints=tuple(joints), size=1.0)
 
 
@@ -182,10 +181,10 @@ def wedge(half_angle: float, width: float) -> Assembly:
             outer=np.array([top, high]),
         ),
         "left foot": Joint(
-            before=SUPPORT, after=0, inner=np.array([-foot, 0.0]), outer=np.array([-out, 0.0])
+            before=-1, after=0, inner=np.array([-foot, 0.0]), outer=np.array([-out, 0.0])
         ),
         "right foot": Joint(
-            before=2, after=SUPPORT, inner=np.array([foot, 0.0]), outer=np.array([out, 0.0])
+            before=2, after=-1, inner=np.array([foot, 0.0]), outer=np.array([out, 0.0])
         ),
     }
     order = ("left foot", "left", "right", "right foot")
@@ -232,8 +231,8 @@ def flat_arch(half_angle: float, half_span: float, depth: float, count: int) -> 
     blocks = [polygon([inner[i], inner[i + 1], outer[i + 1], outer[i]]) for i in range(count)]
     joints = [
         Joint(
-            before=i - 1 if i > 0 else SUPPORT,
-            after=i if i < count else SUPPORT,
+            before=i - 1 if i > 0 else -1,
+            after=i if i < count else -1,
             inner=inner[i],
             outer=outer[i],
         )
