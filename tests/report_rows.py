@@ -6,9 +6,9 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from recorded import recorded
 
 from blocksim import Arch, CircularArch, Mode, Recording, Verdict
-from blocksim.engines.base import Settings
 from blocksim.studies.agreement import Validation
 
 ARCH = Arch(half_angle=math.pi / 2, eta=0.105, voussoirs=8)
@@ -16,18 +16,9 @@ ARCH = Arch(half_angle=math.pi / 2, eta=0.105, voussoirs=8)
 
 def sliding() -> Recording:
     """The right half slides down at the crown, by 0.02 r in the end."""
-    assembly = ARCH.assembly()
-    rest = np.column_stack([assembly.centres, np.zeros(8)])
     moved = np.zeros((11, 8, 3))
     moved[:, 4:, 1] = -0.02 * np.linspace(0, 1, 11)[:, None] ** 2
-    return Recording(
-        problem=CircularArch.of(ARCH, 0.7).problem(),
-        engine="pymunk",
-        engine_version="7.3",
-        settings=Settings(step=0.01, sweeps=10, hold_sweeps=10),
-        times=np.linspace(0, 2, 11),
-        poses=rest + moved,
-    )
+    return recorded(CircularArch.of(ARCH, 0.7).problem(), moved, np.linspace(0, 2, 11))
 
 
 ROW = Validation(

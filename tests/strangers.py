@@ -19,10 +19,10 @@ from typing import Any
 import ezdxf
 import numpy as np
 from hypothesis import strategies as st
+from recorded import recorded
 
-from blocksim import Arch, CircularArch, Recording
+from blocksim import Arch, CircularArch
 from blocksim.blocks.record import to_record
-from blocksim.engines.base import Settings
 
 
 @dataclass(frozen=True)
@@ -163,121 +163,16 @@ def _box(x: float, y: float, wide: float, high: float) -> list[list[float]]:
     return [[x, y], [x + wide, y], [x + wide, y + high], [x, y + high]]
 
 
-STRUCTURE = {
-    "title": "two blocks",
-    "friction": 0.6,
-    "density": 20000.0,
-    "blocks": [
-        {"id": "ground", "fixed": True, "vertices": _box(-1, -1, 4, 1)},
-        {"id": 1, "vertices": _box(0, 0, 1, 1), "weight": 100.0, "depth": 1.0},
-        {"id": "b", "polygons": [_box(0, 1, 1, 1)], "centre": [0.5, 1.5], "inertia": 3.0},
-    ],
-    "dead": [{"body": [0.0, -1.0]}],
-    "live": [
-        {"block": "b", "force": [1.0, 0.0], "point": [0.0, 1.5]},
-        {"patch": [0.1, 0.9], "force": [0.0, -5.0]},
-    ],
-    "load": 1.0,
-    "move": [{"block": "ground", "direction": [1.0, 0.0], "turn_deg": 1.0, "about": [0, 0]}],
-    "size": 1.0,
-    "shake": {"shape": "half-sine", "amplitude_g": 0.1, "duration_s": 0.2},
-    "notes": ["by hand"],
-}
+_TREES: dict[str, Any] = json.loads(Path(__file__).with_suffix(".json").read_text("utf-8"))
+STRUCTURE, BY_KIND, WALL = (_TREES[name] for name in ("STRUCTURE", "BY_KIND", "WALL"))
 GIVEN = {
     **{key: STRUCTURE[key] for key in ("friction", "blocks", "live", "load")},
-    "joints": [
-        {"a": "ground", "b": 1, "ends": [[0, 0], [1, 0]], "friction": 0.5},
-        {"a": 1, "b": "b", "ends": [[0, 1]], "normal": [0, 1]},
-        {"a": 1, "b": "b", "ends": [[1, 1]], "normal": [0, 1], "friction": "inf"},
-    ],
+    "joints": _TREES["joints"],
 }
-SHAKEN = {
-    **GIVEN,
-    "shake": {"times_s": [0.0, 0.1, 0.2], "accelerations_g": [0.0, 0.2, -0.1]},
-}
-BY_KIND = {
-    "kind": "portal",
-    "friction": 0.7,
-    "density": 20000.0,
-    "pier_width": 1.0,
-    "pier_height": 1.0,
-    "arch": {"kind": "circular-arch", "thickness": 0.4, "voussoirs": 7, "fill": 0.2},
-}
-WALL = {"kind": "wall", "friction": 0.7, "courses": 3, "block_height": 0.5}
-SCENARIO = {
-    "title": "t",
-    "source": "s",
-    "quick": True,
-    "arch": {
-        "half_angle_deg": 90.0,
-        "eta": 0.12,
-        "voussoirs": 9,
-        "weight": "sector",
-        "radius": 2.0,
-        "depth": 1.0,
-        "specific_weight": 20000.0,
-    },
-    "contact": {"mu": 0.7},
-    "gravity": {"lean_deg": 0.0},
-    "expect": {"modes": ["rrr"], "eta": 0.1, "verdict": "stands"},
-}
-MEASURED = {
-    "title": "t",
-    "source": "s",
-    "arch": {"span_m": 8.0, "rise_m": 3.0, "thickness_m": 0.5, "at": "intrados",
-             "voussoirs": 9, "unit_weight_kN_per_m3": 22.0},
-    "contact": {"friction_angle_deg": 35.0},
-}  # fmt: skip
-DESIGN = {
-    "half_angle_deg": [60.0, 90.0],
-    "mu": {"low": 0.5, "high": 1.0, "steps": 2, "log": True},
-    "voussoirs": [9],
-    "weight": ["centreline"],
-    "ratio": [0.9],
-    "method": ["limit", "theory"],
-}
-DRAWN_DESIGN = {
-    "half_angle_deg": {"low": 60.0, "high": 90.0},
-    "mu": [0.7],
-    "method": "limit",
-    "random": {"count": 3, "seed": 1},
-}
-POINTS = {
-    "points": [
-        {"case": "a", "method": "limit", "knob": "tolerance", "value": 0.1, "error": 0.1,
-         "low": 0.1, "high": 0.2, "undecided": 0, "work": 10, "processor_s": [0.1],
-         "wall_s": [0.1]}
-    ]
-}  # fmt: skip
-RESULTS = {
-    "rows": [
-        {"half_angle_deg": 90.0, "mu": 0.7, "eta": None, "nothing_stands": None, "found": None,
-         "voussoirs": 9, "weight": "sector", "eta_low": 0.1, "eta_high": 0.11,
-         "mode_observed": "rrr", "scenario": "s", "engine": "direct", "miss": ""}
-    ]
-}  # fmt: skip
-CUBE = {
-    "vertex": {
-        str(i): {"x": i // 4, "y": i // 2 % 2, "z": i % 2} for i in range(8)
-    },
-    "face": {
-        "0": [0, 1, 3, 2], "1": [4, 6, 7, 5], "2": [0, 4, 5, 1],
-        "3": [2, 3, 7, 6], "4": [0, 2, 6, 4], "5": [1, 5, 7, 3],
-    },
-}  # fmt: skip
-PEER = {
-    "dtype": "compas_assembly.datastructures/Assembly",
-    "data": {
-        "graph": {
-            "node": {
-                "0": {"block": {"dtype": "x", "data": CUBE}, "is_support": True},
-                "1": {"block": {"dtype": "x", "data": {
-                    "vertex": {k: {**v, "z": v["z"] + 1} for k, v in CUBE["vertex"].items()},
-                    "face": CUBE["face"]}}},
-            }
-        }
-    },
-}  # fmt: skip
+SHAKEN = {**GIVEN, "shake": _TREES["shake"]}
+SCENARIO, MEASURED = _TREES["SCENARIO"], _TREES["MEASURED"]
+DESIGN, DRAWN_DESIGN = _TREES["DESIGN"], _TREES["DRAWN_DESIGN"]
+POINTS, RESULTS, PEER = _TREES["POINTS"], _TREES["RESULTS"], _TREES["PEER"]
 SVG = (
     b'<svg xmlns="http://www.w3.org/2000/svg" width="400mm" height="300mm" '
     b'viewBox="0 0 4 3"><g id="supports" transform="translate(0, 0) rotate(0) scale(1)">'
@@ -322,21 +217,15 @@ def _plain_dxf() -> bytes:
 def _recording() -> tuple[dict[str, Any], Any, Any]:
     """Header, times and poses of three voussoirs that fall apart."""
     arch = Arch(half_angle=1.2, eta=0.2, voussoirs=3)
-    assembly = arch.assembly()
-    rest = np.column_stack([assembly.centres / assembly.size, np.zeros(3)])
     times = np.linspace(0.0, 0.5, 6)
-    poses = rest + times[:, None, None] ** 2 * np.array([0.3, -0.5, 0.4])
-    settings = Settings(step=0.005, sweeps=250, hold_sweeps=50_000)
-    made = Recording(
-        problem=CircularArch.of(arch, 0.7).problem(), engine="pymunk", engine_version="7.3",
-        settings=settings, times=times, poses=poses,
-    )  # fmt: skip
+    moved = times[:, None, None] ** 2 * np.array([0.3, -0.5, 0.4])
+    made = recorded(CircularArch.of(arch, 0.7).problem(), moved, times)
     header = {
         "format": 2, "problem": to_record(made.problem), "engine": "pymunk",
-        "engine_version": "7.3", "settings": to_record(settings), "quality": {},
+        "engine_version": "7.3", "settings": to_record(made.settings), "quality": {},
         "state_hash": made.state_hash,
     }  # fmt: skip
-    return header, times, poses
+    return header, times, made.poses
 
 
 def packed(header: Any, times: Any, poses: Any) -> bytes:
@@ -530,32 +419,7 @@ def tables(draw: st.DrawFn) -> Attack:
     )
 
 
-OPTIONS = {
-    "check": ("--alpha", "--eta", "--mu", "--friction-angle", "--depth", "--unit-weight",
-              "--lean", "--ratio", "--span", "--rise", "--thickness", "--at", "--weight",
-              "--fill", "--fill-unit-weight", "--load", "--tilt", "--shake", "--amplitude",
-              "--duration", "--joint", "--method", "--with", "--point-load", "--patch-load"),
-    "bracket": ("--alpha", "--mu", "--depth", "--lean", "--tol", "--over", "--within"),
-    "render": ("--alpha", "--eta", "--mu", "--out", "--height", "--view", "--time", "--slow"),
-    "report": ("--alpha", "--eta", "--mu", "--out", "--depth"),
-    "simulate": ("--alpha", "--eta", "--mu", "--out", "--depth", "--over"),
-    "map": ("--zoom", "--out", "--results"),
-    "kinds": (),
-    "cite": ("--method",),
-}  # fmt: skip
-USUAL = {
-    "check": ("--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.12"),
-    "bracket": ("--alpha", "90", "--mu", "0.7", "--voussoirs", "9"),
-    "render": ("--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.2", "--out",
-               "o.svg"),
-    "report": ("--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.2", "--out",
-               "o.html"),
-    "simulate": ("--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.1",
-                 "--seconds", "0.1", "--out", "o.npz"),
-    "map": ("--out", "o.html"),
-    "kinds": (),
-    "cite": (),
-}  # fmt: skip
+OPTIONS, USUAL = _TREES["OPTIONS"], _TREES["USUAL"]
 
 
 @st.composite

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from PIL import Image
+from recorded import recorded
 
 import blocksim
-from blocksim import JointState, Problem, Recording
+from blocksim import JointState, Recording
 from blocksim.blocks.shaking import Shaking
-from blocksim.engines.base import Quality, Settings
 from blocksim.view.drawing import words_of
 from blocksim.view.film import Film
 from blocksim.view.following import FARTHEST
@@ -23,15 +23,6 @@ from blocksim.view.style import DEAD, JOINTS, LIVE
 from blocksim.view.video import render, to_bytes
 
 HEIGHT = 300
-
-
-def recorded(problem: Problem, moved: np.ndarray, times: np.ndarray) -> Recording:
-    """Motion given by displacements of blocks, (frames, blocks, 3) [size]."""
-    return Recording(
-        problem=problem, engine="direct", engine_version="0",
-        settings=Settings(step=0.01, sweeps=1, hold_sweeps=1), times=times,
-        poses=problem.assembly.built[:-1, :3] + moved, quality=Quality(),
-    )  # fmt: skip
 
 
 def frames_of(path: Path, rate: int = 30) -> list[NDArray[np.uint8]]:

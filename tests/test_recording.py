@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from recorded import recorded
 
 from blocksim import Arch, CircularArch, InputError, MachineError, Recording, load_recording
 from blocksim.blocks.record import to_record
 from blocksim.common.files import make_folder, write_whole
-from blocksim.engines.base import Settings
 
 ARCH = Arch(half_angle=1.2, eta=0.15, voussoirs=5, weight="sector", radius=4.0, depth=0.5)
 
@@ -24,14 +24,9 @@ BUILT = PROBLEM["assembly"]
 
 def recording(frames: int = 4) -> Recording:
     random = np.random.default_rng(7)
-    return Recording(
-        problem=CircularArch.of(ARCH, math.inf).problem(),
-        engine="pymunk",
-        engine_version="7.3",
-        settings=Settings(step=0.005, sweeps=250, hold_sweeps=50_000),
-        times=np.linspace(0, 0.3, frames),
-        poses=random.normal(size=(frames, 5, 3)),
-    )
+    moved = random.normal(size=(frames, 5, 3))
+    problem = CircularArch.of(ARCH, math.inf).problem()
+    return recorded(problem, moved, np.linspace(0, 0.3, frames))
 
 
 def test_roundtrip_is_exact(tmp_path: Path) -> None:

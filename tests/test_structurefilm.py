@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import io
 import math
-import re
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from recorded import drawn_words, recorded
 from structure_cases import scenes
 
 from blocksim import JointState, Problem, Recording, structure_of
-from blocksim.engines.base import Settings
 from blocksim.view.canvas import stone_tones
 from blocksim.view.film import Film
 from blocksim.view.planar import PlanarView
@@ -50,21 +48,9 @@ def yard(**more: Any) -> Problem:
     return structure_of({"title": "A yard", "friction": 0.6, "blocks": blocks, **more})
 
 
-def rest(problem: Problem) -> np.ndarray:
-    assembly = problem.assembly
-    return np.column_stack([assembly.centres / assembly.size, np.zeros(len(assembly.blocks))])
-
-
 def recording(problem: Problem, moved: np.ndarray) -> Recording:
     """Record given displacements at equal times up to 1."""
-    return Recording(
-        problem=problem,
-        engine="direct",
-        engine_version="1.0",
-        settings=Settings(step=0.01, sweeps=10, hold_sweeps=10),
-        times=np.linspace(0, 1, len(moved)),
-        poses=rest(problem) + moved,
-    )
+    return recorded(problem, moved, np.linspace(0, 1, len(moved)), engine="direct")
 
 
 def lifted(problem: Problem, turn: float = 0.5) -> Recording:
@@ -74,13 +60,6 @@ def lifted(problem: Problem, turn: float = 0.5) -> Recording:
         np.zeros(count), 0.3 + 0.2 * np.arange(count), turn * (1 + np.arange(count))
     ])  # fmt: skip
     return recording(problem, np.linspace(0, 1, 21)[:, None, None] * speeds)
-
-
-def drawn_words(film: Film, at: float | None = None) -> list[str]:
-    """Words of a frame: in an SVG each is a comment before its glyphs."""
-    file = io.BytesIO()
-    film.still(file, "svg", at)
-    return re.findall(r"<!-- (.*?) -->", file.getvalue().decode())
 
 
 def view_of(film: Film) -> PlanarView:
@@ -102,7 +81,7 @@ def test_pieces_are_rigid_parts_of_their_blocks() -> None:
     assembly = problem.assembly
     assert stage.owner.tolist() == [0, 0, 1, 2]
     moment = stage.at(stage.end)
-    poses = rest(problem) + [[0, 0.3 + 0.2 * k, 0.5 * (1 + k)] for k in range(3)]
+    poses = problem.assembly.built[:-1] + [[0, 0.3 + 0.2 * k, 0.5 * (1 + k)] for k in range(3)]
     pieces = [(k, part) for k, b in enumerate(assembly.blocks) for part in b.polygons]
     for (index, part), seen in zip(pieces, moment.corners, strict=True):
         x, y, turn = poses[index]
@@ -280,7 +259,7 @@ def test_hinges_at_either_end_are_one_thing() -> None:
         joint = joints[drum]
         ends = sorted([joint.inner, joint.outer], key=lambda end: float(end[0]))
         about = (ends[0] if way > 0 else ends[1]) / size
-        old = rest(problem)[drum - 1, :2] if drum else about
+        old = problem.assembly.built[:-1][drum - 1, :2] if drum else about
         cos, sin = math.cos(angle), math.sin(angle)
         hinge = (
             (hinge if drum else about)
@@ -291,8 +270,10 @@ def test_hinges_at_either_end_are_one_thing() -> None:
         )
         angle += way
         cos, sin = math.cos(angle), math.sin(angle)
-        place = hinge + np.array([[cos, -sin], [sin, cos]]) @ (rest(problem)[drum, :2] - about)
-        moved[drum] = [*(place - rest(problem)[drum, :2]), angle]
+        place = hinge + np.array([[cos, -sin], [sin, cos]]) @ (
+            problem.assembly.built[:-1][drum, :2] - about
+        )
+        moved[drum] = [*(place - problem.assembly.built[:-1][drum, :2]), angle]
     run = recording(problem, np.linspace(0, 1, 11)[:, None, None] * moved)
     stage = Stage(run)
     assert {JointState.HINGE_INTRADOS, JointState.HINGE_EXTRADOS} <= set(stage.states)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import math
 import re
@@ -18,12 +17,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.colors import to_rgb
 from PIL import Image
+from recorded import drawn_words, recorded
 from running import inside
 from scipy.spatial.transform import Rotation
 
 from blocksim import Arch, CircularArch, InputError, JointState, Recording, load_recording
 from blocksim.blocks.joints import classify
-from blocksim.engines.base import Settings
 from blocksim.engines.ground import DEPTH
 from blocksim.view.camera import painting_order
 from blocksim.view.canvas import Canvas, Panel, Shape
@@ -44,14 +43,7 @@ def rest(arch: Arch = ARCH) -> np.ndarray:
 
 def recording(moved: np.ndarray, times: np.ndarray, arch: Arch = ARCH) -> Recording:
     """Record given displacements, (frames, blocks, 3)."""
-    return Recording(
-        problem=CircularArch.of(arch, 0.7).problem(),
-        engine="pymunk",
-        engine_version="7.3",
-        settings=Settings(step=0.01, sweeps=10, hold_sweeps=10),
-        times=times,
-        poses=rest(arch) + moved,
-    )
+    return recorded(CircularArch.of(arch, 0.7).problem(), moved, times)
 
 
 def turned_about(point: np.ndarray, angle: float, blocks: list[int]) -> np.ndarray:
@@ -420,13 +412,6 @@ def test_a_film_says_that_blocks_still_move_as_it_ends(tmp_path: Path) -> None:
     with av.open(str(tmp_path / "slides.mp4")) as container:
         frames = [each.to_ndarray(format="gray") for each in container.decode(video=0)]
     assert np.abs(frames[-1].astype(int) - frames[0]).max() > 20
-
-
-def drawn_words(film: Film, at: float | None = None) -> list[str]:
-    """Words of a frame: in an SVG each is a comment before its glyphs."""
-    file = io.BytesIO()
-    film.still(file, "svg", at)
-    return re.findall(r"<!-- (.*?) -->", file.getvalue().decode())
 
 
 def hinged() -> Recording:

@@ -1,0 +1,35 @@
+"""Recordings of motions that are given, and the words of films of them."""
+
+from __future__ import annotations
+
+import io
+import re
+from typing import Any
+
+import numpy as np
+
+from blocksim import Problem, Recording
+from blocksim.engines.base import Settings
+
+SETTINGS = Settings(step=0.01, sweeps=10, hold_sweeps=10)
+
+
+def recorded(
+    problem: Problem, moved: np.ndarray, times: np.ndarray, *, engine: str = "pymunk"
+) -> Recording:
+    """Record displacements of blocks from where they were built, (frames, blocks, 3)."""
+    return Recording(
+        problem=problem,
+        engine=engine,
+        engine_version="1.0",
+        settings=SETTINGS,
+        times=times,
+        poses=problem.assembly.built[:-1, :3] + moved,
+    )
+
+
+def drawn_words(film: Any, at: float | None = None) -> list[str]:
+    """Words of a frame: in an SVG each is a comment before its glyphs."""
+    file = io.BytesIO()
+    film.still(file, "svg", at)
+    return re.findall(r"<!-- (.*?) -->", file.getvalue().decode())
