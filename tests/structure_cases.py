@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 CASES = Path(__file__).parent / "structures" / "cases"
@@ -64,15 +62,3 @@ def first(name: str) -> dict[str, Any]:
     """The first structure of a case, to be read only."""
     read = case(name)
     return (read.get("scenes") or [read["scene"]])[0]
-
-
-def tipped(name: str) -> dict[str, Any]:
-    """The structure of a `rocking` case, its block turned about its lower right corner."""
-    (scene,) = scenes(name)
-    turned = case(name)["initial"]["rotation"]
-    corners = np.array(scene["blocks"][1]["vertices"], dtype=float)
-    pivot = np.array([corners[:, 0].max(), 0.0])
-    cos, sin = math.cos(-turned), math.sin(-turned)
-    corners = (corners - pivot) @ np.array([[cos, sin], [-sin, cos]]) + pivot
-    scene["blocks"][1]["vertices"] = corners.tolist()
-    return scene

@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.integrate import dblquad
 
 from blocksim import Arch, Assembly, Block, InputError, Joint
 from blocksim.blocks.assembly import JointArrays
@@ -79,20 +78,6 @@ def test_inertia_is_that_of_the_sector(arch: Arch) -> None:
     # Inertia is a small difference of polar moments: to the round-off of those.
     assert block.inertia == pytest.approx(expected, rel=1e-12, abs=4e-15 * polar)
     assert block.inertia > 0
-
-
-def test_one_sector_against_adaptive_integration() -> None:
-    arch = Arch(half_angle=1.1, eta=0.4, voussoirs=5, weight="sector", radius=2.0)
-    block, (left, right) = arch.assembly().blocks[3], arch.joint_angles[3:5]
-    x, y = block.centre
-
-    def about_the_centre(radius: float, angle: float) -> float:
-        apart = (radius * math.sin(angle) - x) ** 2 + (radius * math.cos(angle) - y) ** 2
-        return radius * apart
-
-    area_moment, _ = dblquad(about_the_centre, left, right, 1.6, 2.4, epsabs=1e-13)
-    expected = area_moment * arch.specific_weight * arch.depth / 9.81
-    assert block.inertia == pytest.approx(expected, rel=1e-10)
 
 
 @given(arches)
@@ -239,15 +224,6 @@ def test_arrays_are_those_of_its_voussoirs(arch: Arch) -> None:
         JointArrays._fields, assembly.joint_arrays, made.joint_arrays, strict=True
     ):
         assert np.array_equal(mine, its, equal_nan=name == "friction"), name
-
-
-def test_voussoirs_are_those_of_a_tuple() -> None:
-    voussoirs = Arch(half_angle=1.0, eta=0.1, voussoirs=5).assembly().blocks
-    assert [block.name for block in voussoirs] == ["1", "2", "3", "4", "5"]
-    assert voussoirs[-2] is voussoirs[3]
-    assert voussoirs[1:3] == (voussoirs[1], voussoirs[2])
-    with pytest.raises(IndexError):
-        voussoirs[5]
 
 
 def test_reach_is_the_farthest_corner() -> None:

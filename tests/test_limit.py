@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from own_balance import violation
 from scipy.optimize import brentq
@@ -98,25 +98,6 @@ def test_slack_against_the_whole_arch(
 
 
 @given(degrees, friction, counts, weights)
-def test_slack_is_zero_at_the_least_thickness(
-    angle: float, mu: float, count: int, weight: str
-) -> None:
-    alpha = math.radians(angle)
-    found = limit.least_thickness(alpha, mu, count, weight)
-    assume(found.eta is not None)
-    for ratio, sign in ((1 - 1e-6, -1), (1.0, 0), (1 + 1e-6, 1)):
-        eta = found.eta * ratio
-        if eta <= 2:
-            spare = limit.slack(
-                Arch(half_angle=alpha, eta=eta, voussoirs=count, weight=weight), mu
-            )
-            if sign:
-                assert spare * sign > 0
-            else:
-                assert spare == pytest.approx(0, abs=1e-12)
-
-
-@given(degrees, friction, counts, weights)
 def test_stands_agrees_with_the_least_thickness(
     angle: float, mu: float, count: int, weight: str
 ) -> None:
@@ -134,42 +115,6 @@ def test_stands_agrees_with_the_least_thickness(
     assert found.eta * (1 + 1e-9) > 2 or stands(found.eta * (1 + 1e-9))
     # Between the least thickness and 2 there is no gap in what stands.
     assert all(stands(eta) for eta in np.linspace(found.eta * (1 + 1e-9), 2, 20)[:-1])
-
-
-@given(degrees, friction, counts, weights)
-def test_voussoirs_need_no_more_than_the_continuous_arch(
-    angle: float, mu: float, count: int, weight: str
-) -> None:
-    """Fewer joints are fewer places to fail, and each carries the same resultant."""
-    continuous = theory.least_thickness(math.radians(angle), mu, weight)
-    assume(continuous.eta is not None)
-    built = limit.least_thickness(math.radians(angle), mu, count, weight)
-    assert built.eta is not None
-    assert built.eta <= continuous.eta * (1 + 1e-9)
-
-
-@given(degrees, friction, st.integers(4, 20), st.integers(2, 5), weights)
-def test_splitting_every_voussoir_asks_for_more(
-    angle: float, mu: float, count: int, pieces: int, weight: str
-) -> None:
-    alpha = math.radians(angle)
-    whole = limit.least_thickness(alpha, mu, count, weight).eta
-    # An odd number of pieces keeps every joint; an even one of an even count does too.
-    split = limit.least_thickness(alpha, mu, count * pieces, weight).eta
-    assert (split or math.inf) >= (whole or math.inf) * (1 - 1e-12)
-
-
-@given(degrees, st.floats(0.1, 10.0), st.floats(1.0, 3.0), counts, weights)
-def test_monotone_in_friction(
-    angle: float, mu: float, more: float, count: int, weight: str
-) -> None:
-    low = limit.least_thickness(math.radians(angle), mu, count, weight).eta
-    high = limit.least_thickness(math.radians(angle), mu * more, count, weight).eta
-    unbounded = limit.least_thickness(math.radians(angle), math.inf, count, weight).eta
-    # Each is found to its last bits.
-    found = [each or math.inf for each in (low, high, unbounded)]
-    assert found[0] * (1 + 1e-15) >= found[1]
-    assert found[1] * (1 + 1e-15) >= found[2]
 
 
 def rotational(alpha: float) -> tuple[float, float]:
@@ -216,33 +161,6 @@ def test_exact_where_the_hinges_fall_on_joints(
     # Both sides: one voussoir pair more puts the hinge between joints, and it shows.
     off = limit.least_thickness(alpha, mu, step + 2, weight)
     assert off.eta < continuous.eta * (1 - 1e-6)
-
-
-@pytest.mark.parametrize(
-    ("angle", "mu", "weight"),
-    [
-        (90, 0.7, "centreline"),
-        pytest.param(90, 0.35, "sector", marks=pytest.mark.long),
-        pytest.param(125, 0.9, "centreline", marks=pytest.mark.long),
-        pytest.param(145, 1.6, "centreline", marks=pytest.mark.long),
-        (145, 1.7, "sector"),
-    ],
-)
-def test_second_order_in_the_number_of_voussoirs(angle: float, mu: float, weight: str) -> None:
-    """The error depends on where joints fall: its upper envelope over n shows the order."""
-    alpha = math.radians(angle)
-    exact = theory.least_thickness(alpha, mu, weight).eta
-    sizes = np.array([30, 60, 120, 240])
-    envelope = []
-    for size in sizes:
-        sample = np.unique(np.linspace(size, 1.3 * size, 24).astype(int))
-        errors = [
-            1 - limit.least_thickness(alpha, mu, int(count), weight).eta / exact
-            for count in sample
-        ]
-        envelope.append(max(errors))
-    order = -np.polyfit(np.log(sizes), np.log(envelope), 1)[0]
-    assert 1.75 < order < 2.25
 
 
 @settings(max_examples=15)

@@ -7,12 +7,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 from arches import arch_at
-from structure_cases import case, scenes
 
-from blocksim import CircularArch, Problem, Verdict, structure_of
+from blocksim import CircularArch, Problem, Verdict
 from blocksim.engines.base import Quality, Settings
 from blocksim.simulation.motion import EARLY, FINER, MOVED, QUIET, moving_run
-from blocksim.simulation.observation import hold, observe
+from blocksim.simulation.observation import hold
 from blocksim.simulation.simulated import Simulation
 
 SWEEPS = 10
@@ -88,15 +87,6 @@ def test_a_film_of_what_rests_is_no_film_of_a_fall(rests: bool) -> None:
     assert motion.recording.times[-1] == pytest.approx(until, abs=0.1)
     fell = motion.recording.displacement[-1] > MOVED
     assert bool(fell) is not rests
-
-
-@pytest.mark.long
-def test_a_wall_that_stands_does_not_creep_apart_in_bullet() -> None:
-    """5 % inside its load; with the sweeps of the rule its courses were apart by then."""
-    pytest.importorskip("pybullet")
-    read, problem = case("grid_wall_3"), structure_of(scenes("grid_wall_3")[0])
-    seen = observe(problem.with_load(0.95 * read["expected"]["value"]), "pybullet")
-    assert seen.verdict is Verdict.STANDS, seen.reason
 
 
 @pytest.mark.parametrize("below", [1e-8, 1e-6, 1e-4, 1e-2])

@@ -13,10 +13,7 @@ import numpy as np
 import pytest
 from arches import arch_at, bracket_at
 
-from blocksim import Arch, CircularArch, Problem, Verdict, equilibrium
-from blocksim.arch import limit
-from blocksim.arch.reduction import Reduction
-from blocksim.arch.theory.map import divide_friction
+from blocksim import CircularArch, Problem, Verdict, equilibrium
 from blocksim.engines import get_engine
 from blocksim.engines.contact import ContactProblem, Solution
 from blocksim.simulation.observation import hold, observe
@@ -122,34 +119,6 @@ def test_pybullet_says_why_it_is_undecided() -> None:
     assert seen.verdict is Verdict.UNDECIDED
     assert "friction may let it move, too" in seen.reason
     assert "released, it moved" in seen.reason
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("reduce", [False, True])
-def test_pymunk_is_right_where_two_answers_are_likeliest(reduce: bool) -> None:
-    """Steep arches with little more friction than stands at all; a fifth of them let go."""
-    random = np.random.default_rng(11)
-    arches = given = 0
-    while arches < 150:
-        alpha = math.radians(random.uniform(115, 158))
-        mu = divide_friction(alpha) * random.uniform(1, 1.3)
-        count, sector = int(random.integers(4, 26)), random.random() < 0.5
-        weight: str = "sector" if sector else "centreline"
-        least = limit.least_thickness(alpha, mu, count, weight).eta if mu <= 8 else None
-        if least is None or least * 1.1 > 2:
-            continue
-        arches += 1
-        for ratio in (0.97, 0.99, 0.998, 1.0005, 1.002, 1.01, 1.03, 1.1):
-            arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
-            seen = observe(
-                CircularArch.of(arch, mu).problem(),
-                "pymunk",
-                moving=arches % 5 == 0,
-                reduction=Reduction.of(arch, mu) if reduce else None,
-            )
-            assert seen.verdict is (Verdict.STANDS if ratio > 1 else Verdict.COLLAPSES)
-            given += seen.onset.may_slide
-    assert given > 5
 
 
 def test_what_cannot_be_found_is_said_in_words(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,7 +18,6 @@ from arches import arch_at, held_in
 from scipy.spatial.transform import Rotation
 from structure_cases import case, scenes
 
-from analysis import rubble
 from blocksim import (
     Arch,
     Assembly,
@@ -82,19 +81,6 @@ def test_where_the_arch_stands_does_not_matter(
     verdict, start = held(assembly, mu, ELSEWHERE[where])
     assert verdict is expected, mode
     assert start == pytest.approx(held(assembly, mu)[1], abs=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("ratio", "right"),
-    [
-        (0.98, Verdict.COLLAPSES),
-        pytest.param(1.02, Verdict.STANDS, marks=pytest.mark.long),
-    ],
-)
-def test_a_thin_arch_is_never_answered_wrongly(ratio: float, right: Verdict) -> None:
-    """Its joints are shorter than Bullet's own breaking threshold for contact points."""
-    verdict, _ = held(arch_at(ratio, 41, 0.7, 11).assembly(), 0.7)
-    assert verdict in {right, Verdict.UNDECIDED}
 
 
 def case_at(name: str, share: float) -> Problem:
@@ -168,15 +154,6 @@ def test_let_go_blocks_touch_at_the_ends_of_joints_only(problem: Problem) -> Non
     assert off.min(axis=1).max() < 1e-6
 
 
-def test_blocks_stay_in_the_plane() -> None:
-    """Gravity lies in it: nothing leads out, in motion and as rubble."""
-    problem = rubble.drawn(rubble.Case(14, "stack"))
-    recording = simulate_problem(problem, method="pybullet", duration=3.0)
-    across = recording.poses[:, :, 3:]
-    assert np.abs(recording.poses[-1, :, 2]).max() > 0.5
-    assert np.abs(across).max() < 1e-6
-
-
 def test_the_reason_names_bounded_friction() -> None:
     thick = replace(THIN, eta=0.3)
     assert (
@@ -243,15 +220,6 @@ def test_an_arch_that_falls_stays_symmetric_and_falls_as_pymunk_has_it() -> None
     assert known[4, 1] < -0.5
     assert fallen[4, 1] == pytest.approx(known[4, 1], rel=0.02)
     assert np.abs(fallen - fallen[::-1] * (-1, 1)).max() < 1e-3
-
-
-@pytest.mark.long
-def test_contacts_are_kept_where_an_arch_begins_to_turn() -> None:
-    """Where bodies are built anew joints are open by a hair, and no step may miss them."""
-    problem = rubble.drawn(rubble.Case(7, "arch"))
-    fallen = simulate_problem(problem, method="pybullet", duration=1.2)
-    assert np.abs(fallen.poses[-1] - fallen.poses[0]).max() > 0.05
-    assert rubble.measured(fallen)["overlap"] < 0.01
 
 
 def test_a_block_on_its_head_lies_still() -> None:

@@ -33,10 +33,8 @@ from blocksim import (
 from blocksim.arch import limit
 from blocksim.arch.modes import observed_mode
 from blocksim.arch.theory import least_thickness
-from blocksim.blocks.joints import joint_motion
 from blocksim.engines import get_engine
 from blocksim.limit import least_motion
-from blocksim.simulation.motion import SOONEST, moving_run
 from blocksim.simulation.observation import observe
 from blocksim.simulation.onset import onset
 from blocksim.simulation.simulated import Simulation
@@ -74,21 +72,6 @@ def test_purely_sliding_at_any_thickness(eta: float) -> None:
         assert observed_mode(seen.joints, arch) is Mode.SS
 
 
-def test_thin_arches_are_never_answered_wrongly() -> None:
-    """From nothing, thin shallow arches of many voussoirs need millions of sweeps."""
-    for ratio, right in ((0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)):
-        simulation = Simulation.of(
-            CircularArch.of(arch_at(ratio, 20, 0.7, 27), 0.7).problem(), "pymunk"
-        )
-        for sweeps in (1000, 20_000, 100_000):
-            chosen = replace(simulation.settings, hold_sweeps=sweeps, unaided=None)
-            seen = onset(simulation.world(), replace(simulation, settings=chosen))
-            assert seen.verdict in {right, Verdict.UNDECIDED}
-            assert seen.sweeps <= sweeps
-        assert seen.verdict is Verdict.UNDECIDED
-        assert "not converged" in seen.reason
-
-
 @pytest.mark.parametrize(("ratio", "right"), [(0.999, "collapses"), (1.001, "stands")])
 def test_forces_to_begin_with_decide_thin_arches(ratio: float, right: str) -> None:
     """All voussoirs; from nothing it took 17 million sweeps, two minutes."""
@@ -120,18 +103,6 @@ def test_no_forces_to_begin_with_make_a_verdict(
     chosen = replace(simulation.settings, hold_sweeps=30_000, unaided=None)
     seen = onset(world, replace(simulation, settings=chosen))
     assert seen.verdict.value != wrong
-
-
-@pytest.mark.parametrize("count", [8, 10, 12])
-@pytest.mark.parametrize("ratio", [0.98, 1.02])
-def test_an_arch_thrown_upwards_has_not_collapsed(count: int, ratio: float) -> None:
-    """Impulses that overshoot open joints without overlap, but against the weight."""
-    simulation = Simulation.of(
-        CircularArch.of(arch_at(ratio, 20, 0.7, count), 0.7).problem(), "pymunk"
-    )
-    chosen = replace(simulation.settings, hold_sweeps=100_000)
-    seen = onset(simulation.world(), replace(simulation, settings=chosen))
-    assert seen.verdict is Verdict.UNDECIDED
 
 
 @pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES[:7])
@@ -240,39 +211,6 @@ def test_a_slender_block_tips(degrees: float, slenderness: float) -> None:
     assert found[:2] == pytest.approx([-spin * y, spin * x], rel=1e-5, abs=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("angle", "mu", "count", "weight", "mode"),
-    [ARCHES[4], *(pytest.param(*arch, marks=pytest.mark.long) for arch in ARCHES[:4:2])],
-)
-def test_energy_does_not_grow(
-    angle: float, mu: float, count: int, weight: str, mode: Mode
-) -> None:
-    """Poses alone give it: with central differences free fall conserves it exactly."""
-    assert mode in set(Mode)
-    arch = arch_at(0.9, angle, mu, count, weight)
-    simulation = Simulation.of(CircularArch.of(arch, mu).problem(), "pymunk")
-    world = simulation.world()
-    onset(world, simulation)
-    step = simulation.settings.step
-    poses = []
-    for _ in range(round(2.0 / step)):
-        poses.append(world.poses())
-        world.advance(1)
-    path = np.array(poses)
-    speed = (path[2:] - path[:-2]) / (2 * step)
-    # One block weighs 1; lengths in units of r.
-    blocks = simulation.assembly.blocks
-    mass = np.array([block.mass for block in blocks]) / blocks[0].mass
-    inertia = np.array([block.inertia for block in blocks]) / blocks[0].mass
-    kinetic = (mass * (speed[..., :2] ** 2).sum(-1) + inertia * speed[..., 2] ** 2).sum(1) / 2
-    potential = (mass * path[1:-1, :, 1]).sum(1)
-    total = kinetic + potential
-    fallen = potential[0] - potential[-1]
-    assert fallen > 0.01
-    assert total.max() - total[0] < 0.005 * fallen
-    assert total[-1] <= total[0]
-
-
 def test_blocks_at_rest_are_put_back() -> None:
     """`hold` moves nothing, however often."""
     simulation = Simulation.of(
@@ -284,20 +222,6 @@ def test_blocks_at_rest_are_put_back() -> None:
         world.hold(100)
     assert np.array_equal(world.poses(), before)
     assert before[:, :2] == pytest.approx(simulation.assembly.centres, abs=1e-15)
-
-
-def test_standing_arch_stays_where_it_was_built() -> None:
-    simulation = Simulation.of(
-        CircularArch.of(replace(SMALL, eta=0.15), 0.6).problem(), "pymunk"
-    )
-    world = simulation.world()
-    first = onset(world, simulation)
-    motion = moving_run(simulation, world, first.repeat)
-    assert motion.verdict is Verdict.STANDS
-    assert motion.recording.displacement.max() < 1e-5
-    assert motion.recording.times[-1] >= SOONEST
-    gaps = joint_motion(simulation.assembly, motion.recording.poses[-1]).gap
-    assert np.abs(gaps).max() < 1e-5
 
 
 def test_what_it_starts_with_names_the_mode() -> None:

@@ -409,13 +409,6 @@ def _twisted() -> dict:
     return table
 
 
-def _behind() -> dict:
-    table = compas_of([GROUND, SQUARE, SQUARE], [0])
-    for p in table["data"]["graph"]["data"]["node"]["2"]["block"]["data"]["vertex"].values():
-        p["x"], p["y"] = p["x"] + 0.5, p["y"] + 0.5
-    return table
-
-
 def _broken_node(**changes: object) -> dict:
     table = copy.deepcopy(compas_of([GROUND, SQUARE], [0]))
     table["data"]["graph"]["data"]["node"]["1"]["block"]["data"] |= changes

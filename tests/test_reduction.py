@@ -24,8 +24,6 @@ from blocksim import (
     check,
 )
 from blocksim.arch import limit
-from blocksim.arch.limit import weakest_joints
-from blocksim.arch.limit.halfplanes import half_joints
 from blocksim.arch.modes import observed_mode
 from blocksim.arch.reduction import MIRROR, Reduction
 from blocksim.engines import ENGINES, get_engine
@@ -129,21 +127,6 @@ def test_mass_centre_and_inertia_are_those_of_the_voussoirs(drawn):
     else:
         # What holds half a keystone cannot turn.
         assert halves[2] > 1e9 * everything[2]
-
-
-@given(arches())
-def test_blocks_are_convex_and_apart(drawn):
-    """Each lies between the lines of its faces, where no other block is."""
-    arch, kept = drawn
-    half = Reduction(arch.assembly(), kept).assembly
-    for index, block in enumerate(half.blocks):
-        edges = np.roll(block.vertices, -1, axis=0) - block.vertices
-        following = np.roll(edges, -1, axis=0)
-        turns = edges[:, 0] * following[:, 1] - edges[:, 1] * following[:, 0]
-        assert turns.min() > -1e-12
-        for joint, inward in ((half.joints[index], 1), (half.joints[index + 1], -1)):
-            ahead = (block.vertices - joint.inner) @ joint.normal * inward
-            assert ahead.min() > -1e-12 * half.size
 
 
 @given(arches(), st.sampled_from([3, 6]), st.integers(0, 2**32 - 1))
@@ -257,18 +240,6 @@ def test_a_keystone_that_leaves_the_plane_takes_all_voussoirs():
     assert few.blocks == every.blocks == 5
     assert few.onset.acceleration == every.onset.acceleration
     assert "blocks" not in few.reason
-
-
-def test_limit_analysis_names_the_joints_that_act_at_the_least_thickness():
-    for case in CASES:
-        arch, mu = arch_at(1.0, *case), case[1]
-        state = limit.least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight)
-        angles = half_joints(arch.half_angle, arch.voussoirs)
-        named = {angles[k] for k in weakest_joints(arch, mu)}
-        acting = {*state.hinges_intrados, *state.hinges_extrados, *state.slides}
-        # The guess is rough: now and then it names a neighbour.
-        spacing = 2.01 * arch.half_angle / arch.voussoirs
-        assert all(min(abs(place - other) for other in named) < spacing for place in acting)
 
 
 # The answers.

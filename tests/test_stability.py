@@ -91,24 +91,6 @@ def test_sweeps_of_a_release(ratio: float, sweeps: float, right: bool) -> None:
     assert released(simulation).verdict is Verdict.COLLAPSES
 
 
-@pytest.mark.parametrize(("longer", "right"), [(1, True), (4, True), (32, False)])
-def test_step_of_a_release(longer: float, right: bool) -> None:
-    """The same sweeps in a unit of time, in fewer and longer steps."""
-    for ratio, truth in SIDES:
-        simulation = setup_at(ratio, 125, 0.9, 26, "pymunk")
-        step, sweeps = (
-            simulation.settings.step * longer,
-            round(simulation.settings.sweeps * longer),
-        )
-        simulation = replace(
-            simulation,
-            settings=replace(simulation.settings, step=step, sweeps=sweeps, repeats=0),
-        )
-        assert released(simulation).verdict in (
-            {truth} if right else {truth, Verdict.UNDECIDED}
-        )
-
-
 @pytest.mark.parametrize("engine", ["direct", "pymunk", "pybullet"])
 @pytest.mark.parametrize("far", [False, True])
 @pytest.mark.parametrize(("ratio", "right"), SIDES)
