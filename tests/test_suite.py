@@ -397,6 +397,49 @@ def test_a_page_is_written_and_a_lost_level_told(tmp_path: Path) -> None:
     assert done.stderr.startswith("blocksim: sliding: right to 0.1 % was expected")
 
 
+@pytest.mark.parametrize("name", ["semicircle-01", "turned-boxes-01"])
+def test_a_replay_has_the_poses_that_were_said(name: str, tmp_path: Path) -> None:
+    """By its table, in metres and seconds, where turns are rotation vectors."""
+    scene = questions()[name].scene
+    frames, count = len(scene.times), len(scene.moving)
+    centres = np.array([body.centre for body in scene.moving])
+    moved = np.random.default_rng(1).normal(size=(frames, count, centres.shape[1]))
+    moved[0] = 0.0
+    angle = np.linspace(0.0, 3.0, frames)[:, None, None]
+    axis = np.array([1.0] if scene.dimensions == 2 else [2 / 3, -2 / 3, 1 / 3])
+    turn = np.broadcast_to(angle * axis, (frames, count, len(axis)))
+    half = np.broadcast_to(angle / 2, (frames, count, 1))
+    said = turn if len(axis) == 1 else np.concatenate([np.cos(half), np.sin(half) * axis], -1)
+    poses = np.concatenate([centres + moved, said], axis=-1).tolist()
+    path = written(tmp_path / "a.jsonl", [HEAD, {"scene": name, "seconds": 1, "poses": poses}])
+    recording, table = str(tmp_path / "run.npz"), tmp_path / "run.json"
+    done = inside("suite", "replay", path, name, "--out", recording)
+    assert done.returncode == 0, done.stderr
+    done = inside("render", recording, "--out", str(table))
+    assert done.returncode == 0, done.stderr
+    found = json.loads(table.read_text())
+    np.testing.assert_allclose(found["time_s"], scene.times, atol=1e-12)
+    columns = ["x_m", "y_m", "z_m"][: scene.dimensions]
+    places = np.stack([found[each] for each in columns], -1)
+    np.testing.assert_allclose(places, centres + moved, atol=1e-9)
+    columns = ["rotation_rad"] if len(axis) == 1 else [f"rotation_{x}_rad" for x in "xyz"]
+    turns = np.stack([found[each] for each in columns], -1)
+    np.testing.assert_allclose(turns, turn, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["incline-01", "incline-02", "thrown-1"])
+def test_what_shows_no_motion_is_not_replayed(name: str, tmp_path: Path) -> None:
+    lines = [HEAD, {"scene": "incline-01", "seconds": 0, "verdict": "stands"}]
+    thrown = questions()["thrown-1"]
+    assert isinstance(thrown, Motion)
+    lines.append({"scene": "thrown-1", "seconds": 0, "poses": thrown.poses.tolist()})
+    path, out = written(tmp_path / "a.jsonl", lines), tmp_path / "run.npz"
+    done = inside("suite", "replay", path, name, "--out", str(out))
+    assert (done.returncode, done.stdout, out.exists()) == (2, "", False)
+    assert name in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
 GOOD = {"scene": "incline-01", "seconds": 0.1, "verdict": "stands"}
 
 

@@ -62,6 +62,10 @@ COMMANDS = {
         "refereeing.score",
         "Hold what an engine said of these scenes to the truth.",
     ),
+    "suite replay": (
+        "refereeing.replay",
+        "Make a recording of what an engine said of a scene, to film it.",
+    ),
     "sweep": (
         "sweeping.sweep",
         "Ask about many arches. A run that was killed goes on where it was.",

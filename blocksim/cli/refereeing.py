@@ -8,12 +8,15 @@ from typing import Annotated
 import click
 
 from blocksim.cli.arguments import Argument, Option
-from blocksim.cli.options import Json
+from blocksim.cli.options import Json, require_given
 from blocksim.cli.output import answer_with, say
+from blocksim.common.checks import require
+from blocksim.common.errors import perhaps
 from blocksim.report.referee import known_scores, read_score, score_lines, write_score
-from blocksim.suite.answers import read_answers
+from blocksim.suite.answers import read_answers, recording_of
 from blocksim.suite.export import chosen, questions
 from blocksim.suite.export import export as export_scenes
+from blocksim.suite.families import Question
 from blocksim.suite.score import scored, worse
 
 
@@ -58,3 +61,32 @@ def score(
     for sentence in lost:
         click.echo(f"blocksim: {sentence}", err=True)
     raise click.exceptions.Exit(int(bool(lost)))
+
+
+def replay(
+    answers: Annotated[str, Argument(about="What an engine said: a file of JSON lines.")],
+    scene: Annotated[str, Argument(about="A scene that it answered by poses.")],
+    out: Annotated[Path | None, Option(about="Recording to write, .npz; required.")] = None,
+) -> None:
+    """Make a recording of what an engine said of a scene.
+
+    `blocksim render` films it, alone or beside the motion by another engine.
+    """
+    require_given(out=out)
+    out = out or Path()
+    require(out.suffix == ".npz", "--out", str(out), "a file that ends in .npz")
+    asked = questions()
+    head, said = read_answers(answers, {name: each.scene for name, each in asked.items()})
+    require(scene in said, "SCENE", scene, f"one that is answered{perhaps(scene, said)}")
+    question = asked[scene]
+    allowed = "a scene that asks whether blocks stand"
+    require(isinstance(question, Question), "SCENE", scene, allowed)
+    assert isinstance(question, Question)  # noqa: S101
+    recording = recording_of(head, said[scene], question)
+    recording.save(out)
+    truth = "stands" if question.stands else "falls"
+    way = float(recording.displacement[-1]) * recording.assembly.size
+    say(
+        f"wrote {out}: {scene} {truth}; by {head.engine} a corner has moved {way:.3g} m at the "
+        f"end, {question.scene.bound:.3g} m count as standing"
+    )

@@ -7,11 +7,16 @@ from dataclasses import dataclass
 from typing import Any, Literal, cast, get_args
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import LONGEST, MISSING, InputError, perhaps
 from blocksim.common.files import AnyPath, json_of, opened
+from blocksim.engines.base import Settings
+from blocksim.simulation.recording import Recording
+from blocksim.suite.families import Question
 from blocksim.suite.scene import PLANAR, SPATIAL, Bodies, Scene
 
 FORMAT = "blocksim answers 1"
@@ -173,3 +178,35 @@ def _poses(where: str, given: Any, scene: Scene) -> Array:
     allowed = "where the scene begins: centres of mass, and angles from there in rad"
     require(near, f"{where}[0]", f"a corner {away:.3g} m away", allowed)
     return poses
+
+
+def recording_of(head: Head, answer: Answer, question: Question) -> Recording[Any]:
+    """Return an engine's poses of a scene as a recording, to be seen like any other.
+
+    Of its settings a recording can hold none: they are words.
+
+    Raises
+    ------
+    InputError
+        If the engine gave a verdict without poses.
+    """
+    poses, problem = answer.poses, question.problem
+    allowed = "a scene answered by poses: a verdict alone shows no motion"
+    require(poses is not None, "scene", answer.scene, allowed)
+    assert poses is not None  # noqa: S101
+    size = problem.assembly.size
+    if problem.in_space:
+        # Ours have the real part last.
+        turns = Rotation.from_quat(poses[..., [4, 5, 6, 3]].reshape(-1, 4)).as_rotvec()
+        moved = np.concatenate([poses[..., :3] / size, turns.reshape(*poses.shape[:2], 3)], -1)
+    else:
+        moved = poses / [size, size, 1.0]
+    times = question.scene.times
+    return Recording(
+        problem=problem,
+        engine=head.engine,
+        engine_version=head.version,
+        settings=Settings(step=float(times[1]), sweeps=1, hold_sweeps=1),
+        times=times * np.sqrt(STANDARD_GRAVITY / size),
+        poses=moved,
+    )
