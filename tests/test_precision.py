@@ -49,10 +49,7 @@ ARCHES = [
     (149.156, 1.79), (151.74, 1e3), (155, 3), (159, INF), (170, 1.0), (179.9, 1e-6),
     (179.9, INF),
 ]  # fmt: skip
-MORE = [
-    (1, 1e-6), (1, -0.3), (2.87, INF), (2.87, -0.05), (5, -0.1), (30, -0.02), (90, INF),
-    (127.8, 30), (149.2, 1.79), (150, 2.5), (151.6, 1e3), (151.74, INF), (155, 1e6),
-]  # fmt: skip
+MORE = [(1, 1e-6), (2.87, -0.05), (127.8, 30), (155, 1e6)]
 
 
 def assert_close(found: float, truth: mpf, moved: mpf, what: object) -> None:
@@ -113,7 +110,7 @@ def test_divide(mu: float) -> None:
 
 AS_BUILT = and_long(
     [(1, INF, 4), (1, 0.7, 27), (90, 0.35, 30), (145, 1.6, 25), (160, 30, 5)],
-    [(1, -0.2, 8), (5, INF, 27), (5, 1e6, 5), (30, 0.7, 13), (150, 2.5, 13)],
+    [(1, -0.2, 8), (5, 1e6, 5)],
 )
 
 
@@ -142,7 +139,7 @@ def test_overturning_slides_at_any_finite_friction(mu: float) -> None:
 
 
 @pytest.mark.parametrize("weight", WEIGHTS)
-@pytest.mark.parametrize("mu", and_long([1.0, 2.8, INF], [2.0, 5.0, 100.0]))
+@pytest.mark.parametrize("mu", and_long([1.0, 2.8, INF], [100.0]))
 def test_what_stands_at_a_point_of_the_map(mu: float, weight: str) -> None:
     """At eta = 2 the widest arch stands, and one wider by 1e-14 does not."""
     alpha = float(at_points(2.0, mu, weight).half_angle)
@@ -172,7 +169,7 @@ def test_lines_name_their_range(line: object, value: float, field: str, named: s
     assert named in str(caught.value)
 
 
-@pytest.mark.parametrize("degrees", and_long([5, 90, 179], [30, 60, 140]))
+@pytest.mark.parametrize("degrees", [5, 90, 179])
 def test_when_three_voussoirs_stand_at_any_thickness(degrees: float) -> None:
     """The line through the middle of both joints, and the friction it asks for.
 

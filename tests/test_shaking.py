@@ -69,7 +69,7 @@ def test_velocity_is_the_integral_of_the_acceleration(shape: str) -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", ["pulse_1x4_03", "pulse_1x4_05", "pulse_1x4_10"])
+@pytest.mark.parametrize("name", ["pulse_1x4_03", "pulse_1x4_10"])
 def test_a_pulse_overturns_a_block_from_its_known_duration_on(name: str) -> None:
     """Corpus: half a hundredth to either side of the duration, by `direct`."""
     assert shake(shaken(name, 0.995), "direct").verdict is Verdict.STANDS
@@ -136,7 +136,7 @@ def test_records_rock_a_block_in_pymunk_as_housner_says(peak: float) -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", ["frame_pulse_gamma05", "frame_pulse_gamma20"])
+@pytest.mark.parametrize("name", ["frame_pulse_gamma20"])
 def test_a_lintel_on_two_columns_overturns_with_them(name: str) -> None:
     """Makris and Vassiliou: a frame rocks like a larger block."""
     assert shake(shaken(name, 0.99), "direct").verdict is Verdict.STANDS

@@ -65,13 +65,11 @@ def test_span_at_collapse_by_continuation(name: str, share: float) -> None:
     assert springings == [JointState.HINGE_EXTRADOS] * 2
 
 
-@pytest.mark.parametrize(
-    "thickness", [pytest.param(each, marks=pytest.mark.long) for each in (0.12, 0.15, 0.2)]
-)
-def test_span_at_collapse_by_slow_motion(thickness: float) -> None:
+@pytest.mark.long
+def test_span_at_collapse_by_slow_motion() -> None:
     """`direct` knows nothing of hinges: its supports move slowly, and stop at times."""
-    problem = structure_of(semicircle(thickness))
-    want = case(f"spread_90_{100 * thickness:.0f}_20")["expected"]["value"]
+    problem = structure_of(semicircle(0.15))
+    want = case("spread_90_15_20")["expected"]["value"]
     seen = Spreading(problem).slowly(0.005, 0.5)
     assert seen.low is not None
     assert seen.high is not None
@@ -98,9 +96,7 @@ def test_closed_contacts_stay_and_open_ones_do_not_overlap() -> None:
     assert shift == pytest.approx([-reach, reach], rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    "steps", [None, *(pytest.param(each, marks=pytest.mark.long) for each in (8, 17, 83, 110))]
-)
+@pytest.mark.parametrize("steps", [None, pytest.param(17, marks=pytest.mark.long)])
 def test_a_three_hinged_arch_of_two_blocks_falls_when_it_is_flat(steps: int | None) -> None:
     """Two slabs lean on each other, on the inner corners of their feet and on their tops.
 
@@ -125,12 +121,9 @@ def test_a_three_hinged_arch_of_two_blocks_falls_when_it_is_flat(steps: int | No
     assert path.value == pytest.approx(flat, rel=1e-8)
 
 
-TWELVE = (
-    *((7, 0.35), (8, 0.35), (9, 0.2), (11, 0.4), (13, 0.25), (15, 0.4)),
-    *((17, 0.15), (19, 0.3), (21, 0.2), (25, 0.35), (27, 0.15), (31, 0.25)),
-)
+SPREADING = ((7, 0.35), (8, 0.35), (17, 0.15), (31, 0.25))
 """Voussoirs and thickness of semicircles."""
-SHARES = (0.5, 0.51, 0.0, 1.0, 0.25)
+SHARES = (0.5, 0.51, 1.0)
 """Of the motion, that the left support does."""
 Hinges = tuple[int, int, int]
 
@@ -237,8 +230,8 @@ def shared(voussoirs: int, thickness: float, share: float) -> Spreading:
 @pytest.mark.parametrize(
     ("arch", "shares"),
     [
-        (TWELVE[0], (0.51,)),
-        *(pytest.param(arch, SHARES, marks=pytest.mark.long) for arch in TWELVE),
+        (SPREADING[0], (0.51,)),
+        *(pytest.param(arch, SHARES, marks=pytest.mark.long) for arch in SPREADING),
     ],
 )
 def test_spread_is_one_value_however_it_is_shared(
@@ -260,8 +253,7 @@ def test_a_support_that_turns_takes_the_branch_that_rests() -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("arch", [(7, 0.35), (9, 0.2), (11, 0.4), (17, 0.15)])
-@pytest.mark.parametrize("share", [0.5, 0.3])
+@pytest.mark.parametrize(("arch", "share"), [((7, 0.35), 0.3), ((11, 0.4), 0.5)])
 def test_direct_brackets_the_stable_branch(arch: tuple[int, float], share: float) -> None:
     (want,) = first_fall(*arch)
     found = bracket(shared(*arch, share).asked, over="spread", method="direct")
