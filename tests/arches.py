@@ -60,7 +60,6 @@ def arch_at(
     """An arch at a ratio of the least thickness of its voussoirs; its half-angle in degrees."""
     alpha = math.radians(angle)
     least = limit.least_thickness(alpha, mu, count, weight).eta
-    assert least is not None
     return Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
 
 

@@ -21,9 +21,18 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from blocksim import Problem, structure_of
+
 G = 9.81
 LONGEST, SHARE, STILL = 0.02, 0.1, 1e-8
 FALLEN = math.pi / 2
+
+
+def block(width: float = 1.0, height: float = 4.0, mu: float = 2.0) -> Problem:
+    """A block on a floor."""
+    floor = {"id": 0, "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]], "fixed": True}
+    corners = [[0, 0], [width, 0], [width, height], [0, height]]
+    return structure_of({"friction": mu, "blocks": [floor, {"id": 1, "vertices": corners}]})
 
 
 @dataclass

@@ -78,7 +78,6 @@ REPEATED = {
 def test_an_option_given_twice_is_taken_twice_or_refused() -> None:
     for name in COMMANDS:
         command = app.get_command(click.Context(app), name)
-        assert command is not None
         for option in command.params:
             if not isinstance(option, click.Option):
                 continue
@@ -121,8 +120,6 @@ QUESTION = ("check", *ARCH, "--eta", "0.12")
 @pytest.mark.parametrize("asked", [QUESTION, pytest.param(("doctor",), marks=pytest.mark.long)])
 def test_a_reader_that_has_gone_hears_no_verdict(asked: tuple[str, ...]) -> None:
     with subprocess.Popen([*PROGRAM, *asked], stdout=-1, stderr=-1) as process:
-        assert process.stdout is not None
-        assert process.stderr is not None
         process.stdout.close()
         assert process.stderr.read() == b""
     assert process.returncode == 141

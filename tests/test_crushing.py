@@ -64,7 +64,6 @@ def test_factors_grow_with_strength_to_that_of_rigid_blocks() -> None:
     """What lacks falls in proportion to the inverse of the strength."""
     pushed = _pushed((1.0, 0.0), (0.0, HIGH))
     rigid = blocksim.collapse(pushed).load_factor
-    assert rigid is not None
     factors = [rigid - _factor(pushed, strength) for strength in (1e5, 1e6, 1e7)]
     assert factors[0] / factors[1] == pytest.approx(10, rel=1e-4)
     assert factors[1] / factors[2] == pytest.approx(10, rel=1e-3)
@@ -156,11 +155,8 @@ def test_a_block_bears_evenly_beside_its_edge() -> None:
     weight = HEAVY * WIDE * HIGH * DEEP
     arm = WIDE / 2 - 100.0 * HIGH / weight
     needed = weight / (2 * arm * DEEP)
-    assert found.needed is not None
     assert found.needed.low <= needed <= found.needed.high * (1 + 1e-12)
     assert found.needed.high == pytest.approx(needed, rel=1e-7)
-    assert found.carried is not None
-    assert found.carried.resultants is not None
     assert found.carried.resultants.stress == pytest.approx([needed], rel=1e-6)
 
 
@@ -169,7 +165,6 @@ def test_every_kind_needs_what_a_smaller_strength_lacks(kind: str) -> None:
     """Whatever is built: a little more than is needed stands, a little less crushes."""
     problem = KINDS[kind](friction=0.7, density=2e4).problem()
     needed = strength_needed(problem)
-    assert needed is not None
     assert needed.low == pytest.approx(needed.high, rel=1e-6)
     for share, stands in ((1.001, True), (0.999, False)):
         found = blocksim.check(replace(problem, strength=share * needed.high))
@@ -181,7 +176,6 @@ def test_the_strength_that_is_needed_is_of_any_size(heavy: float) -> None:
     """Of a column unit weight times height, also beyond what may be given as a strength."""
     column = blocksim.Column(drums=10, drum_height=1.5, width=1, friction=0.5, density=heavy)
     needed = strength_needed(column.problem())
-    assert needed is not None
     assert needed.high == pytest.approx(15 * heavy, rel=1e-6)
 
 

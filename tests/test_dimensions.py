@@ -189,7 +189,6 @@ def test_a_scenario_in_metres(tmp_path: Path) -> None:
     path.write_text(SCENARIO)
     found = load_scenario(path)
     arch = found.maker.shape
-    assert arch is not None
     assert arch.half_angle == pytest.approx(ALPHA, rel=EXACT)
     assert (arch.weight, arch.specific_weight) == ("sector", 22_000)
     one = json.loads(inside("check", str(path), "--json").stdout)

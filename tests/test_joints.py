@@ -13,11 +13,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from blocksim import Arch, Assembly, JointState, Mode
-from blocksim.arch.circular import crown_width
-from blocksim.arch.modes import ActiveJoint, name_mode, observed_mode
+from blocksim import Arch, Assembly, JointState
+from blocksim.arch.modes import observed_mode
 from blocksim.blocks.joints import (
-    ObservedJoint,
     classify,
     closed_joints,
     joint_motion,
@@ -102,16 +100,6 @@ def test_slide(index: int, slip: float) -> None:
     assert states(ASSEMBLY, moved)[index] is STATE.SLIDES
 
 
-@given(st.integers(1, 7), st.floats(1e-6, 0.1))
-def test_slide_has_a_sign_and_gap_another(index: int, size: float) -> None:
-    joint = ASSEMBLY.joints[index]
-    apart = joint_motion(ASSEMBLY, shifted(REST, list(range(index, 8)), size * joint.normal))
-    pressed = joint_motion(ASSEMBLY, shifted(REST, list(range(index, 8)), -size * joint.normal))
-    assert apart.gap[index] == pytest.approx([size, size], rel=1e-8)
-    assert pressed.gap[index] == pytest.approx([-size, -size], rel=1e-8)
-    assert abs(apart.slip[index]) < 1e-14
-
-
 def test_open_joint() -> None:
     """Turned and parted by more than its turn: open at both ends."""
     joint = ASSEMBLY.joints[3]
@@ -156,154 +144,3 @@ def test_a_joint_does_not_see_a_common_motion(
     assert two.gap[3:6] == pytest.approx(one.gap[3:6], abs=1e-13)
     assert two.slip[3:6] == pytest.approx(one.slip[3:6], abs=1e-13)
     assert two.turn[3:6] == pytest.approx(one.turn[3:6], abs=1e-13)
-
-
-def spread_poses(arch: Arch, poses: np.ndarray) -> tuple[ObservedJoint, ...]:
-    return classify(arch.assembly(), poses)
-
-
-def rotational_collapse(arch: Arch, hinge: int, angle: float) -> np.ndarray:
-    """Five-hinge mechanism of an arch with a crown joint, to first order in the angle.
-
-    The lower part turns about the extrados of the springing, the upper one about the
-    instantaneous centre on the line through springing and intrados hinge, at the height
-    of the crown's extrados, so that the crown hinge moves straight down.
-    """
-    assembly = arch.assembly()
-    half = arch.voussoirs // 2
-    poses = np.column_stack([assembly.centres / arch.radius, np.zeros(arch.voussoirs)])
-    joints = assembly.joints
-    foot = joints[-1].outer / arch.radius
-    knee = joints[half + hinge].inner / arch.radius
-    crown = joints[half].outer / arch.radius
-    # Centre of the upper part: level with the crown hinge, in line with foot and knee.
-    along = (crown[1] - foot[1]) / (knee[1] - foot[1])
-    centre = foot + along * (knee - foot)
-    lower = -angle
-    upper = lower * float(np.dot(knee - foot, knee - foot) / np.dot(knee - foot, knee - centre))
-    for index in range(half, arch.voussoirs):
-        spin, about = (lower, foot) if index >= half + hinge else (upper, centre)
-        arm = poses[index, :2] - about
-        step = spin * np.array([-arm[1], arm[0]])
-        mirror = arch.voussoirs - 1 - index
-        poses[index] += [step[0], step[1], spin]
-        poses[mirror] += [-step[0], step[1], -spin]
-    return poses
-
-
-@pytest.mark.parametrize(("count", "hinge"), [(20, 6), (30, 9), (40, 12)])
-def test_theoretical_rotational_mechanism(count: int, hinge: int) -> None:
-    arch = Arch(half_angle=math.pi / 2, eta=0.107, voussoirs=count)
-    poses = rotational_collapse(arch, hinge, 1e-7)
-    found = spread_poses(arch, poses)
-    middle = count // 2
-    expected = dict.fromkeys(range(count + 1), STATE.CLOSED)
-    expected[0] = expected[count] = expected[middle] = STATE.HINGE_EXTRADOS
-    expected[middle - hinge] = expected[middle + hinge] = STATE.HINGE_INTRADOS
-    assert {i: joint.state for i, joint in enumerate(found)} == expected
-    assert observed_mode(found, arch) is Mode.RRR
-    assert overlap_and_slip(arch.assembly(), poses)[0] < 1e-5
-
-
-ONE_SIDE: dict[Mode, list[ActiveJoint]] = {
-    Mode.RRR: [
-        ActiveJoint(2.0, slides=False),
-        ActiveJoint(1.0, slides=False, intrados=True),
-        ActiveJoint(0.0, slides=False),
-    ],
-    Mode.SS: [ActiveJoint(2.0, slides=True), ActiveJoint(0.3, slides=True)],
-    Mode.SRR: [
-        ActiveJoint(2.0, slides=True),
-        ActiveJoint(1.0, slides=False, intrados=True),
-        ActiveJoint(0.0, slides=False),
-    ],
-    Mode.RRS: [
-        ActiveJoint(2.0, slides=False),
-        ActiveJoint(1.0, slides=False, intrados=True),
-        ActiveJoint(0.3, slides=True),
-    ],
-    Mode.RSR: [
-        ActiveJoint(2.0, slides=False),
-        ActiveJoint(0.3, slides=True),
-        ActiveJoint(0.2, slides=False, intrados=True),
-    ],
-    Mode.RS: [
-        ActiveJoint(2.0, slides=False),
-        ActiveJoint(0.3, slides=True),
-        ActiveJoint(0.0, slides=False, intrados=True),
-    ],
-    Mode.R: [
-        ActiveJoint(2.0, slides=False),
-        ActiveJoint(0.0, slides=False),
-        ActiveJoint(0.0, slides=False, intrados=True),
-    ],
-}
-
-
-@pytest.mark.parametrize("mode", Mode)
-@given(st.randoms())
-def test_every_mode_has_its_name_in_any_order(mode: Mode, random: object) -> None:
-    joints = list(ONE_SIDE[mode])
-    random.shuffle(joints)
-    assert name_mode(joints, 1e-9) is mode
-    assert mode.description
-
-
-@pytest.mark.parametrize(
-    "joints",
-    [
-        [],
-        [ActiveJoint(2.0, slides=True)],
-        [ActiveJoint(1.0, slides=False), ActiveJoint(0.0, slides=False)],
-        [*ONE_SIDE[Mode.RRR], ActiveJoint(0.5, slides=False, intrados=True)],
-        [*ONE_SIDE[Mode.SS], ActiveJoint(1.0, slides=True)],
-    ],
-)
-def test_anything_else_has_none(joints: list[ActiveJoint]) -> None:
-    assert name_mode(joints, 1e-9) is None
-
-
-def test_inner_hinge_and_slide_at_one_joint_is_rrs() -> None:
-    """Fig. 21 (low), beta_r = beta_s: the paper's rrs, beta_r >= beta_s."""
-    joints = [
-        ActiveJoint(2.0, slides=False),
-        ActiveJoint(0.3, slides=True),
-        ActiveJoint(0.3, slides=False, intrados=True),
-    ]
-    assert name_mode(joints, 1e-9) is Mode.RRS
-
-
-def observed(angles: list[float], kinds: list[JointState]) -> tuple[ObservedJoint, ...]:
-    both = {0.0: STATE.CLOSED}
-    for angle, kind in zip(angles, kinds, strict=True):
-        both[angle] = both[-angle] = kind
-    return tuple(ObservedJoint(angle=a, state=s) for a, s in sorted(both.items()))
-
-
-def test_keystone_hinges_count_as_the_crown() -> None:
-    """Odd n: no crown joint, one or two hinges beside it, and both name rrr."""
-    alpha, count = math.pi / 2, 27
-    beside, shoulder, haunch = alpha / 27, alpha, 17 * alpha / 27
-    kinds = [STATE.HINGE_EXTRADOS, STATE.HINGE_INTRADOS, STATE.HINGE_EXTRADOS]
-    both = observed([shoulder, haunch, beside], kinds)
-    arch = Arch(half_angle=alpha, eta=0.1, voussoirs=count)
-    assert observed_mode(both, arch) is Mode.RRR
-    one = tuple(joint for joint in both if joint.angle != -beside)
-    assert observed_mode(one, arch) is Mode.RRR
-    assert crown_width(alpha, 27) >= beside > crown_width(alpha, 28)
-
-
-def test_a_hinge_between_two_joints_shows_as_both_and_counts_once() -> None:
-    alpha, count = math.pi / 2, 20
-    step = 2 * alpha / count
-    kinds = [
-        STATE.HINGE_EXTRADOS,
-        STATE.HINGE_INTRADOS,
-        STATE.HINGE_INTRADOS,
-        STATE.HINGE_EXTRADOS,
-    ]
-    arch = Arch(half_angle=alpha, eta=0.1, voussoirs=count)
-    near = observed([alpha, 6 * step, 5 * step, 0.0], kinds)
-    far = observed([alpha, 7 * step, 5 * step, 0.0], kinds)
-    assert observed_mode(near, arch) is Mode.RRR
-    assert observed_mode(far, arch) is None

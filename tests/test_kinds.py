@@ -437,7 +437,6 @@ def test_every_kind_stands_as_it_comes(name: str) -> None:
     assert equilibrium(problem).exists
     assert problem.title == name
     assert not {*fields_of(KINDS[name])} & {*AROUND, "kind", "blocks"}
-    assert problem.maker is not None
     assert structure_of({**problem.maker.table(), "friction": 0.7}).maker == problem.maker
     again = structure.structure_of(structure.structure_record(problem))
     assert again.assembly.centres == pytest.approx(problem.assembly.centres, abs=1e-12)

@@ -178,7 +178,6 @@ def test_answers_agree_with_their_sources(rows: list[StructureRow]) -> None:
     assert by["box2d_tilted_stack", "pymunk"].verdict is Verdict.COLLAPSES
     thin = by["catenary", "direct"]
     assert (thin.low, thin.at_high) == (None, Verdict.STANDS)
-    assert thin.high is not None
     assert thin.high < 1e-3
 
 
@@ -219,25 +218,6 @@ def test_what_is_wrong_is_a_miss(
     known = load_known(name)
     row = answer(known, replace(known.expect[0], **changes), method)
     assert said in row.miss
-
-
-def test_spreading_supports_open_the_joints_known() -> None:
-    """Intrados six joints from the crown on both sides, extrados at the crown."""
-    known = load_known("spread_90_12_20")
-    row = answer(known, known.expect[0], "limit")
-    assert (row.miss, row.hinges) == ("", (4, 10, 16))
-    assert row.value == pytest.approx(case("spread_90_12_20")["expected"]["of_span"], rel=1e-6)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", ["spread_90_12_20", "spread_90_15_20"])
-def test_spreading_by_direct(name: str) -> None:
-    known = load_known(name)
-    row = answer(known, known.expect[0], "direct")
-    assert row.miss == ""
-    assert row.low is not None
-    assert row.high is not None
-    assert row.low * 0.99 < case(name)["expected"]["of_span"] < row.high * 1.01
 
 
 def test_what_is_not_asked_is_said() -> None:
@@ -298,8 +278,6 @@ def test_pictures_are_of_the_mechanism(page: str, rows: list[StructureRow]) -> N
     assert len(frames) == 2
     assert not any(any(pose) for pose in frames[0])
     row = next(row for row in rows if row.structure == "oppenheim_7" and row.method == "direct")
-    assert row.drawn is not None
-    assert row.drawn.rates is not None
     # Blocks turn as in the mechanism: one way, the other way, and back, seen from y downwards.
     turns = [pose[2] for pose in frames[1]]
     assert [math.copysign(1, -turn) for turn in turns] == [

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from blocksim import InputError, Mode
+from blocksim import Mode
 from blocksim.arch.theory import landmarks, least_thickness, least_thicknesses, regions
 from blocksim.arch.theory.map import (
     at_points,
@@ -137,11 +137,3 @@ def test_the_divide_for_any_friction(mu: float) -> None:
         assert found == pytest.approx(float(exact.divide_half_angle(mu, found)), rel=1e-12)
     else:
         assert math.pi - found == pytest.approx(1 / mu, abs=5e-16, rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("field", "values"), [("eta", (0.0, 1.0)), ("eta", (2.1, 1.0)), ("mu", (1.0, -1.0))]
-)
-def test_wrong_input_is_named(field: str, values: tuple) -> None:
-    with pytest.raises(InputError, match=field):
-        at_points(*values)

@@ -36,7 +36,6 @@ def slope(width: float, height: float, tilt: float, mu: float | str) -> Problem:
 def thrusts(problem: Problem, joint: int) -> tuple[float, float]:
     """Least and greatest thrust [N]."""
     found = thrust_range(problem, joint)
-    assert found is not None
     return found[0].thrust * problem.unit_force, found[1].thrust * problem.unit_force
 
 
@@ -103,7 +102,6 @@ def test_arches_agree_with_their_own_statics(
     half = math.radians(alpha)
     least = least_thickness(half, mu, voussoirs, "centreline").eta
     assume(least and spare * least < 2)
-    assert least is not None
     arch = Arch(half_angle=half, eta=spare * least, voussoirs=voussoirs, weight=weight)
     problem = CircularArch.of(arch, mu).problem()
     found = margins(problem)
@@ -116,7 +114,6 @@ def test_arches_agree_with_their_own_statics(
     own = carried_by_arch(arch, CircularArch.of(arch, mu).problem())
     assert own.thrust == pytest.approx((low, high), rel=1e-9)
     assert own.strength_used == pytest.approx(found.strength, rel=1e-9)
-    assert found.friction is not None
     assert own.least_friction == pytest.approx(found.friction * mu, rel=1e-9)
     # Vertical loads leave every joint the same thrust; springings past the horizontal face
     # the other way.
@@ -131,7 +128,6 @@ def test_a_two_hinged_wedge_by_hand() -> None:
     problem = CircularArch.of(arch, math.inf).problem()
     quarter = arch.voussoir_weight
     found = thrust_range(problem, 2)
-    assert found is not None
     for each in found:
         carried = resultants(problem, each.forces)
         # Moments of the right half about where its springing presses.
@@ -175,7 +171,6 @@ def test_supports_bear_the_weight_and_its_moment(table: dict[str, Any]) -> None:
     joint = crown(problem)
     if joint is not None:
         ends = thrust_range(problem, joint)
-        assert ends is not None
         states += [each.forces for each in ends if each.forces is not None]
     weight = problem.applied_forces() * problem.unit_force
     centres = problem.assembly.centres
@@ -201,7 +196,6 @@ def test_no_joint_uses_more_than_is_said(name: str) -> None:
     for scene in scenes(name):
         problem = structure_of(scene)
         found = margins(problem)
-        assert found.strength is not None
         if found.strength == 0:
             continue
         assert found.forces is not None

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from derivations import least_thickness_by_program
 
-from blocksim import Arch, InputError
+from blocksim import Arch
 from blocksim.arch.limit import least_thickness
 from blocksim.arch.limit.mechanism import mechanism
 
@@ -119,8 +119,3 @@ def test_symmetric_rates_are_symmetric() -> None:
         eta = least_thickness(2.18, 0.9, voussoirs).eta
         found = mechanism(Arch(half_angle=2.18, eta=eta, voussoirs=voussoirs), 0.9)
         np.testing.assert_array_equal(found.rates, found.rates[::-1])
-
-
-def test_wrong_friction_is_named() -> None:
-    with pytest.raises(InputError, match="mu"):
-        mechanism(Arch(half_angle=1.0, eta=0.1, voussoirs=9), -1.0)

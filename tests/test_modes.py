@@ -14,9 +14,7 @@ from blocksim.arch import limit, theory
 from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import observed_mode
 from blocksim.cli import app
-from blocksim.kinds.scenarios import load_scenario
 from blocksim.simulation.observation import observe
-from blocksim.studies.validate import validate_one
 
 SEVEN = [
     (90, 0.7, 27, Mode.RRR),
@@ -61,13 +59,6 @@ def test_rsr_is_read_from_the_start_and_not_from_motion() -> None:
     outside, inside = JointState.HINGE_EXTRADOS, JointState.HINGE_INTRADOS
     half = [outside, JointState.SLIDES, inside]
     assert active == half + half[::-1]
-
-
-@pytest.mark.parametrize("engine", ["direct", "pymunk"])
-def test_the_scenario_of_rsr_is_confirmed(engine: str) -> None:
-    row = validate_one(load_scenario("fig21_top_inner_hinge_above"), engine, tol=1e-3)
-    assert row.mode_observed is row.mode_limit is Mode.RSR
-    assert row.miss == ""
 
 
 @pytest.mark.parametrize("eta", [0.05, 0.1, 0.15, 0.2, 1.0])

@@ -63,8 +63,6 @@ def test_brackets_close_where_there_are_two_answers(case: Case) -> None:
     found = bracket_at(*case, method="pymunk", tol=2e-4)
     assert found.confirmed
     assert found.undecided == 0
-    assert found.arch.eta_low is not None
-    assert found.arch.eta_high is not None
     assert found.arch.eta_low < exact < found.arch.eta_high
     assert found.arch.eta_high / found.arch.eta_low <= 1 + 2.1e-4
     assert found.arch.mode == found.arch.mode_limit

@@ -468,11 +468,3 @@ def test_a_number_that_is_not_met_is_an_exit_code(
     done = inside("paper", str(tmp_path), "--figure", "1")
     assert done.returncode == 1
     assert "MISSES" in done.stdout
-
-
-@pytest.mark.long
-def test_the_command_draws_all_of_them(tmp_path: Path) -> None:
-    assert inside("paper", str(tmp_path)).returncode == 0
-    drawn_files = sorted(tmp_path.glob("fig*.svg"))
-    assert [path.stem for path in drawn_files] == [f"fig{n:02}" for n in range(1, 26)]
-    assert all("</svg>" in path.read_text("utf-8")[-20:] for path in drawn_files)

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from structure_cases import case, names, of_each_kind, scenes
 from test_drawn_joints import bricks, drawn
 
-from blocksim import CircularArch, Load, Problem, check, collapse, equilibrium, structure_of
+from blocksim import CircularArch, Problem, check, collapse, equilibrium, structure_of
 from blocksim.common.errors import Unsolved
 from blocksim.limit import least_motion, linear, programme
 from blocksim.limit.cones import Cones
@@ -267,25 +267,6 @@ def test_published_least_friction(name: str) -> None:
     assert not equilibrium(with_friction_everywhere(problem, least * (1 - 1e-6))).exists
 
 
-@given(st.sampled_from(["oppenheim_7", "jack_arch_load", "trilithon"]), st.floats(0.05, 20.0))
-def test_twice_the_live_load_has_half_the_factor(name: str, times: float) -> None:
-    """And all loads a common factor leave it."""
-    (scene,) = scenes(name)
-    problem = structure_of(scene)
-    was = collapse(problem).load_factor
-    assert was is not None
-    live = tuple(_times(load, times) for load in problem.live)
-    assert collapse(replace(problem, live=live)).load_factor == pytest.approx(was / times)
-    dead = tuple(_times(load, times) for load in problem.dead)
-    gravity = problem.gravity * times
-    all_times = replace(problem, live=live, dead=dead, gravity=gravity)
-    assert collapse(all_times).load_factor == pytest.approx(was, rel=1e-9)
-
-
-def _times(load: Load, factor: float) -> Load:
-    return replace(load, force=factor * load.force)
-
-
 @given(st.floats(1.0, 80.0), lengths, lengths)
 def test_a_smooth_block_slides_as_it_must(slope: float, width: float, height: float) -> None:
     """Without friction it starts with sin of the slope, along it, whatever its shape."""
@@ -352,7 +333,6 @@ def test_large_structures_are_answered_as_small_ones_are(
     vertex = equilibrium(wall)
     assert found.margin == pytest.approx(vertex.margin, abs=1e-6)
     for each in (found, vertex):
-        assert each.proof is not None
         assert each.proof.claim == ("stands" if degrees == 0 else "collapses")
 
 

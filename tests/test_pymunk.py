@@ -32,7 +32,6 @@ from blocksim import (
 )
 from blocksim.arch import limit
 from blocksim.arch.modes import observed_mode
-from blocksim.arch.theory import least_thickness
 from blocksim.engines import get_engine
 from blocksim.limit import least_motion
 from blocksim.simulation.observation import observe
@@ -103,27 +102,6 @@ def test_no_forces_to_begin_with_make_a_verdict(
     chosen = replace(simulation.settings, hold_sweeps=30_000, unaided=None)
     seen = onset(world, replace(simulation, settings=chosen))
     assert seen.verdict.value != wrong
-
-
-@pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES[:7])
-def test_the_weight_drives_the_mechanism(
-    angle: float, mu: float, count: int, weight: str, mode: Mode
-) -> None:
-    """Work balance: what weight gives, motion gains, but for friction where joints slide."""
-    simulation = Simulation.of(
-        CircularArch.of(arch_at(0.99, angle, mu, count, weight), mu).problem(), "pymunk"
-    )
-    world = simulation.world()
-    for _ in range(4):
-        motion = world.hold(20_000)
-    blocks = simulation.assembly.blocks
-    mass, inertia = blocks[0].mass, blocks[0].inertia
-    given_up = -mass * motion[:, 1].sum()
-    gained = mass * (motion[:, :2] ** 2).sum() + inertia * (motion[:, 2] ** 2).sum()
-    if mode is Mode.RRR:
-        assert given_up == pytest.approx(gained, rel=1e-3)
-    else:
-        assert given_up > 1.1 * gained
 
 
 HASH = """
@@ -222,16 +200,3 @@ def test_blocks_at_rest_are_put_back() -> None:
         world.hold(100)
     assert np.array_equal(world.poses(), before)
     assert before[:, :2] == pytest.approx(simulation.assembly.centres, abs=1e-15)
-
-
-def test_what_it_starts_with_names_the_mode() -> None:
-    """A thin arch that slides where it is published, and opens at the crown a little later."""
-    mu = 0.1802
-    arch = Arch(half_angle=math.radians(75), eta=0.126, voussoirs=20)
-    published = least_thickness(arch.half_angle, mu)
-    seen = observe(CircularArch.of(arch, mu).problem(), "pymunk")
-    assert observed_mode(seen.joints, arch) is Mode.SS
-    assert published.modes == (Mode.SS,)
-    sliding = sorted({abs(joint.angle) for joint in seen.joints if joint.state == "slides"})
-    spacing = 2 * arch.half_angle / arch.voussoirs
-    assert sliding == pytest.approx([published.beta_s, arch.half_angle], abs=spacing / 2)

@@ -18,7 +18,6 @@ from hypothesis import strategies as st
 from blocksim import (
     Arch,
     CircularArch,
-    Problem,
     Verdict,
     bracket,
     check,
@@ -26,7 +25,7 @@ from blocksim import (
 from blocksim.arch import limit
 from blocksim.arch.modes import observed_mode
 from blocksim.arch.reduction import MIRROR, Reduction
-from blocksim.engines import ENGINES, get_engine
+from blocksim.engines import ENGINES
 from blocksim.simulation.observation import hold, observe
 from blocksim.simulation.onset import onset
 from blocksim.simulation.simulated import Simulation
@@ -149,11 +148,6 @@ def test_rates_are_those_of_rigid_blocks_and_their_mirror_images(drawn, columns,
     assert np.abs(rest[:, 2:]).max() == 0
 
 
-def placed(engine, assembly, mu):
-    library = get_engine(engine)
-    return library.build(Problem(assembly=assembly, mu=mu), library.rule(assembly))
-
-
 # What joints carry.
 
 
@@ -245,20 +239,6 @@ def test_a_keystone_that_leaves_the_plane_takes_all_voussoirs():
 # The answers.
 
 
-@pytest.mark.parametrize(("half_angle_deg", "mu", "voussoirs", "weight"), CASES)
-def test_a_billionth_of_the_limit_decides(half_angle_deg, mu, voussoirs, weight):
-    for ratio, expected in ((1 - 1e-9, Verdict.COLLAPSES), (1 + 1e-9, Verdict.STANDS)):
-        arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
-        seen = observe(
-            CircularArch.of(arch, mu).problem(),
-            "direct",
-            moving=False,
-            reduction=Reduction.of(arch, mu),
-        )
-        assert seen.verdict is expected
-        assert seen.blocks <= 6
-
-
 @settings(deadline=None, max_examples=20)
 @given(
     st.floats(30, 155),
@@ -297,21 +277,6 @@ def test_pymunk_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs, we
         if expected is Verdict.COLLAPSES:
             state = limit.least_thickness(arch.half_angle, mu, voussoirs, weight)
             assert observed_mode(seen.joints, arch) is state.mode
-
-
-@pytest.mark.parametrize(
-    ("half_angle_deg", "mu", "voussoirs"),
-    [(90, 0.7, 27), (90, 0.7, 28), pytest.param(125, 0.9, 101, marks=pytest.mark.long)],
-)
-def test_pybullet_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs):
-    pytest.importorskip("pybullet")
-    for ratio, expected in ((0.995, Verdict.COLLAPSES), (1.005, Verdict.STANDS)):
-        arch = arch_at(ratio, half_angle_deg, mu, voussoirs)
-        seen = observe(
-            CircularArch.of(arch, mu).problem(), "pybullet", reduction=Reduction.of(arch, mu)
-        )
-        assert seen.verdict is expected, seen.reason
-        assert seen.motion.recording.poses.shape[1:] == (voussoirs, 6)
 
 
 @pytest.mark.parametrize("method", ["direct", "pymunk"])

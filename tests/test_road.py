@@ -75,7 +75,6 @@ def weights(problem: Problem) -> np.ndarray:
     acting += [(load.point, load.force) for load in problem.dead]
     acting += [(load.point, problem.load * load.force) for load in problem.live]
     for point, (x, y) in acting:
-        assert point is not None
         total += [x, y, point[0] * y - point[1] * x]
     return total
 
@@ -104,7 +103,6 @@ def test_an_arch_under_fill_and_loads_is_held_by_what_it_weighs() -> None:
     own = HEAVY * DEPTH * ring
     fill = FILL * DEPTH * above(RADIUS + THICK / 2, ALPHA, HEIGHT)
     known = fill_of(problem)
-    assert known is not None
     assert known.weight == pytest.approx(fill, rel=1e-9)
     held = reaction(problem)
     assert held[1] == pytest.approx(own + fill + 80_000, rel=1e-9)
@@ -128,7 +126,6 @@ def test_a_portal_under_fill_is_held_by_what_it_weighs() -> None:
     beside = (edge - outer * math.sin(angle)) * (outer + 0.4 - spring)
     fill = FILL * (above(outer, angle, 0.4) + 2 * beside)
     known = fill_of(problem)
-    assert known is not None
     assert known.weight == pytest.approx(fill, rel=1e-9)
     # Piers, skewbacks below and beside the springings, and the ring.
     low = inner * math.cos(angle)

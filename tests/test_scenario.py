@@ -51,7 +51,6 @@ def test_leaning_scenarios_claim_what_statics_says(name: str) -> None:
     scenario = load_scenario(name)
     assert scenario.expected_modes == ()
     arch = scenario.maker.shape
-    assert arch is not None
     blocks = arch.assembly().blocks
     height = np.mean([block.centre[1] for block in blocks])
     height -= arch.radius * math.cos(arch.half_angle)
@@ -103,7 +102,6 @@ def test_a_file_becomes_an_arch(tmp_path: Path) -> None:
     scenario = load_scenario(written(tmp_path, GOOD))
     assert scenario.name == "scene"
     arch = scenario.maker.shape
-    assert arch is not None
     assert arch.half_angle == math.pi / 2
     assert (arch.eta, arch.voussoirs, arch.weight) == (0.12, 27, "centreline")
     assert (arch.radius, arch.depth, arch.specific_weight) == (1.0, 1.0, 20_000.0)

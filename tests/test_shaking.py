@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rocking import rocks
+from rocking import block, rocks
 from running import inside
 from scipy.integrate import quad
 from structure_cases import case, scenes
@@ -41,13 +41,6 @@ def shaken(name: str, share: float) -> Problem:
     duration = share * case(name)["expected"]["least_duration_s"]
     shaking = Shaking(shape="constant", amplitude=amplitude, duration=duration)
     return replace(structure_of(scenes(name)[0]), shaking=shaking)
-
-
-def block(width: float = 1.0, height: float = 4.0, mu: float = 2.0) -> Problem:
-    """A block on a floor."""
-    floor = {"id": 0, "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]], "fixed": True}
-    corners = [[0, 0], [width, 0], [width, height], [0, height]]
-    return structure_of({"friction": mu, "blocks": [floor, {"id": 1, "vertices": corners}]})
 
 
 def acceleration(shaking: Shaking, time: float) -> float:
@@ -89,28 +82,6 @@ def test_oppenheims_arch_falls_in_pymunk_where_statics_says() -> None:
     assert stands.verdict is Verdict.STANDS
     assert stands.recording.displacement.max() < 1e-6
     assert falls.verdict is Verdict.COLLAPSES
-
-
-def tilted_block(angle: float) -> Problem:
-    """A block of 1 by 4 m on the floor that leans about its right-hand corner."""
-    turn = np.exp(-1j * angle)
-    corners = [1 + turn * (x - 1 + 1j * y) for x, y in ((0, 0), (1, 0), (1, 4), (0, 4))]
-    floor = {"id": 0, "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]], "fixed": True}
-    leaning = {"id": 1, "vertices": [[each.real, each.imag] for each in corners]}
-    return structure_of({"friction": 2.0, "blocks": [floor, leaning]})
-
-
-def test_free_rocking_in_pymunk_keeps_what_housner_says() -> None:
-    """Let go at 0.15 rad; each impact leaves (1 - 1.5 sin^2 alpha)^2 of the energy."""
-    alpha = math.atan2(1.0, 4.0)
-    kept = (1 - 1.5 * math.sin(alpha) ** 2) ** 2
-    fallen = math.cos(alpha - 0.15) - math.cos(alpha)
-    wanted = alpha - math.acos(math.cos(alpha) + kept * fallen)
-    problem = tilted_block(0.15)
-    still = Shaking(shape="constant", amplitude=0.0, duration=2.0)
-    until = 2.0 / problem.seconds
-    seen = shake(replace(problem, shaking=still), "pymunk", until=until)
-    assert seen.recording.poses[:, 0, 2].max() - 0.15 == pytest.approx(wanted, rel=0.015)
 
 
 @pytest.mark.long
@@ -248,8 +219,6 @@ def test_an_amplitude_is_bracketed(method: str, confirm: bool) -> None:
     asked = {"over": "amplitude", "method": method, "tol": 0.05, "confirm": confirm}
     found = bracket(problem, **asked)
     assert found.confirmed is (True if confirm else None)
-    assert found.low is not None
-    assert found.high is not None
     assert found.low < 0.5 * 1.005
     assert found.high > 0.5 * 0.995
     assert found.high / found.low < 1.06

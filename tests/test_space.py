@@ -71,7 +71,6 @@ def test_the_forces_of_a_case_balance_and_lie_within_friction() -> None:
     """Summed again from the forces at the points, in N."""
     problem = problem_in_space(case("dome_12_7_stands")["scene"])
     static, assembly = can_rest(problem), problem.assembly
-    assert static.point_forces is not None
     left = problem.applied_forces() * assembly.units
     at = 0
     for joint in assembly.joints:
@@ -111,7 +110,6 @@ def test_a_mechanism_opens_no_joint_less_than_its_slip_asks(falling: str) -> Non
     problem = FALLING[falling]()
     static, assembly = can_rest(problem), problem.assembly
     assert static.exists is False
-    assert static.mechanism is not None
     rates = static.mechanism * np.array([assembly.size] * 3 + [1.0] * 3)
     assert (rates * problem.applied_forces() * assembly.units).sum() > 0
     for joint in assembly.joints:
@@ -218,9 +216,6 @@ def test_a_block_slides_or_topples_on_a_table_tilted_towards_any_azimuth(
     answer = blocksim.bracket(problem, over="tilt", tol=1e-6)
     over = min(a / max(abs(math.cos(way)), 1e-12), b / max(abs(math.sin(way)), 1e-12)) / h
     assert answer.limit == pytest.approx(math.degrees(math.atan(min(mu, over))), rel=1e-7)
-    assert answer.low is not None
-    assert answer.high is not None
-    assert answer.limit is not None
     assert answer.low < answer.limit < answer.high
     assert blocksim.check(problem.tilted(math.radians(answer.low))).verdict is Verdict.STANDS
     fallen = blocksim.check(problem.tilted(math.radians(answer.high)))
@@ -329,13 +324,6 @@ def test_commands_answer_in_space_with_the_keys_of_the_plane() -> None:
     assert words.startswith("COLLAPSES  (limit")
 
 
-def test_spatial_problems_say_what_they_are() -> None:
-    """A `repr` in one line."""
-    problem = problem_of(tower(0))
-    assert problem.in_space
-    assert repr(problem).startswith("Problem(6 blocks in space, ")
-
-
 @pytest.mark.parametrize(
     ("lunes", "courses", "least"), [(8, 5, 0.0373487032422), (12, 7, 0.0410514715596)]
 )
@@ -380,7 +368,6 @@ def test_a_barrel_vault_is_as_thick_as_the_arch_it_is_made_of(rings: int, bond: 
     """Its least thickness is that of the plane arch of as many voussoirs of flat faces."""
     arch = blocksim.CircularArch(voussoirs=15, weight="chord", friction=0.7)
     least = blocksim.bracket(arch, over="thickness", method="limit").limit
-    assert least is not None
     vault = BarrelVault(radius=1.0, length=0.8, rings=rings, bond=bond, friction=0.7)
     for share, exists in ((1 - 1e-7, False), (1 + 1e-7, True)):
         assert can_rest(vault.but(thickness=share * least).problem()).exists is exists
@@ -428,7 +415,6 @@ def test_a_groin_vault_that_is_pushed_lies_between_two_linear_programmes() -> No
     problem = replace(vault, live=(push,))
     below, above = enclosed(problem, sides=32)
     found = largest_load(problem).load_factor
-    assert found is not None
     assert 0 < below <= found * (1 + 1e-6)
     assert found <= above * (1 + 1e-6) < below * 1.02
 

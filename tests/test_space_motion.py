@@ -170,9 +170,7 @@ def test_a_dome_that_is_too_thin_falls_to_the_ground() -> None:
     dome = Dome(lunes=8, courses=4, thickness=0.03, friction=0.7)
     recording = blocksim.simulate(dome.problem(), method="direct", duration=3.0)
     quality, problem = recording.quality, recording.problem
-    assert quality.gain is not None
     assert quality.gain < 1e-3
-    assert quality.penetration is not None
     assert quality.penetration < 1e-3
     heights = recording.poses[:, :, 2] * problem.assembly.size
     assert (heights.max(axis=1) <= heights[0].max() + 1e-6).all()

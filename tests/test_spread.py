@@ -71,8 +71,6 @@ def test_span_at_collapse_by_slow_motion() -> None:
     problem = structure_of(semicircle(0.15))
     want = case("spread_90_15_20")["expected"]["value"]
     seen = Spreading(problem).slowly(0.005, 0.5)
-    assert seen.low is not None
-    assert seen.high is not None
     assert 0.995 * want < seen.low < seen.high < 1.005 * want
     assert seen.solved
 
@@ -257,8 +255,6 @@ def test_a_support_that_turns_takes_the_branch_that_rests() -> None:
 def test_direct_brackets_the_stable_branch(arch: tuple[int, float], share: float) -> None:
     (want,) = first_fall(*arch)
     found = bracket(shared(*arch, share).asked, over="spread", method="direct")
-    assert found.low is not None
-    assert found.high is not None
     assert 0.998 * want < found.low < found.high < 1.002 * want
     assert found.confirmed
 
@@ -285,7 +281,6 @@ def test_supports_that_settle() -> None:
     down = [[{"block": side, "direction": [0, -1]}] for side in ("left", "right")]
     found = [Spreading(structure_of({**table, "move": move})) for move in down]
     value = found[0].exact
-    assert value is not None
     assert found[1].exact == pytest.approx(value, rel=1e-6)
     hinges = [
         [at for at, state in enumerate(each.path.events[0].after.states) if state != "closed"]
@@ -293,8 +288,6 @@ def test_supports_that_settle() -> None:
     ]
     assert hinges == [[0, 6, 10], [2, 6, 12]]
     seen = found[1].slowly(0.01, 0.5)
-    assert seen.low is not None
-    assert seen.high is not None
     assert 0.99 * value < seen.low < seen.high < 1.01 * value
 
 
@@ -373,6 +366,5 @@ def test_supports_that_move_are_recorded_until_all_has_fallen(
     moved = (apart - apart[0]) * size
     falls = moved[int(np.argmax(crown < crown[0] - 0.3))]
     known = Spreading(structure_of(json.loads(file.read_text()))).exact
-    assert known is not None
     # It takes a while to fall, in which the supports go on.
     assert known < falls < known + 0.01 * 3

@@ -13,9 +13,6 @@ import pytest
 
 from blocksim import Arch, Assembly, CircularArch, Problem, Verdict
 from blocksim.arch.limit import least_thickness
-from blocksim.blocks.joints import overlap_and_slip
-from blocksim.engines.base import Quality
-from blocksim.simulation import motion
 from blocksim.simulation.motion import Motion, moving_run
 from blocksim.simulation.observation import Held, conclude
 from blocksim.simulation.onset import Onset, onset
@@ -28,7 +25,6 @@ def setup_at(ratio: float, angle: float, mu: float, count: int, engine: str) -> 
     if engine == "pybullet":
         pytest.importorskip("pybullet", exc_type=ImportError)
     least = least_thickness(math.radians(angle), mu, count).eta
-    assert least is not None
     arch = Arch(half_angle=math.radians(angle), eta=least * ratio, voussoirs=count)
     return Simulation.of(CircularArch.of(arch, mu).problem(), engine)
 
@@ -131,37 +127,3 @@ def test_settings_beyond_those_measured_are_named(
     seen = conclude(Held(simulation=changed, world=world, onset=first), moving=moving)
     assert ("to be sure" in seen.reason) == (moving and word != "")
     assert not moving or word in seen.reason
-
-
-class Drifting:
-    """A world whose blocks sink into each other, by so much in all and no more."""
-
-    def __init__(self, simulation: Simulation, way: float) -> None:
-        assembly = simulation.assembly
-        self._start = np.column_stack(
-            [assembly.centres / assembly.size, np.zeros(len(assembly.blocks))]
-        )
-        self._way, self._steps = way, 0
-
-    def advance(self, steps: int) -> None:
-        self._steps += steps
-
-    def poses(self) -> np.ndarray:
-        moved = self._start.copy()
-        moved[0, 1] -= self._way * (1 - math.exp(-self._steps))
-        return moved
-
-    def quality(self) -> Quality:
-        return Quality()
-
-
-@pytest.mark.parametrize(("way", "right"), [(5e-7, True), (5e-6, False)])
-def test_what_counts_as_noise_of_a_release(way: float, right: bool) -> None:
-    """What pybullet leaves over in each step adds up; that is no overlap yet."""
-    simulation = setup_at(1.02, 90, 0.7, 9, "pybullet")
-    simulation = replace(simulation, settings=replace(simulation.settings, repeats=0))
-    world = Drifting(simulation, way)
-    seen = moving_run(simulation, world, lambda _: None, until=10.0)
-    assert overlap_and_slip(simulation.assembly, world.poses())[0] > motion.OVERLAP
-    assert seen.verdict is (Verdict.STANDS if right else Verdict.UNDECIDED)
-    assert (seen.recording.times[-1] == pytest.approx(10.0)) == right

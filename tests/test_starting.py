@@ -43,7 +43,6 @@ def between_walls(lean: float, mu: float) -> Problem:
 def arch(mu: float, times: float, voussoirs: int = 3) -> Problem:
     """A wide arch of so many times its least thickness."""
     eta = least_thickness(HALF_ANGLE, mu, voussoirs).eta
-    assert eta is not None
     return CircularArch.of(
         Arch(eta=eta * times, half_angle=HALF_ANGLE, voussoirs=voussoirs), mu
     ).problem()
@@ -51,8 +50,6 @@ def arch(mu: float, times: float, voussoirs: int = 3) -> Problem:
 
 def wrong(problem: Problem, start: Start) -> float:
     """By how much a motion breaks Newton's law or Coulomb's, joint by joint [g]."""
-    assert start.accelerations is not None
-    assert start.forces is not None
     rates = rates_of(problem) @ start.accelerations.ravel()
     pulls = np.einsum("je,jen->n", start.forces[..., 0], rates_of(problem)[:, :2]) + np.einsum(
         "j,jn->n", start.forces[..., 1].sum(axis=1), rates_of(problem)[:, 2]
@@ -87,7 +84,6 @@ def test_a_block_that_hangs_by_friction_may_fall(mu: float) -> None:
 def test_the_motion_is_recorded_and_drawn() -> None:
     """What hangs by friction may fall freely; let go slowly, it is caught again at once."""
     found = check(between_walls(-0.9 * math.atan(0.6), 0.6), must_rest=True, method="limit")
-    assert found.motion is not None
     gone = let_go(found.problem, found.motion.accelerations)
     assert ", pushed along a motion" in gone.problem.title
     fallen = gone.poses[0, 0, 1] - gone.poses[:, 0, 1]
@@ -112,7 +108,6 @@ def test_a_film_shows_the_motion_that_friction_lets_begin(tmp_path: Path) -> Non
         must_rest=True,
         method="limit",
     )
-    assert found.motion is not None
     poses = let_go(found.problem, found.motion.accelerations).poses
     assert (poses[-1, :, 1] < poses[0, :, 1] - 0.3).sum() >= 4
     refused = blocksim(*arch, "--ratio", "1.6", "--out", str(out))
@@ -164,7 +159,6 @@ def test_its_motion_is_none_with_other_friction() -> None:
 def test_elsewhere_there_is_no_band(alpha: float, mu: float) -> None:
     half_angle = math.radians(alpha)
     eta = least_thickness(half_angle, mu, 7).eta
-    assert eta is not None
     problem = CircularArch.of(
         Arch(half_angle=half_angle, eta=1.001 * eta, voussoirs=7), mu
     ).problem()
@@ -196,7 +190,6 @@ def test_what_rests_beside_it_hides_no_motion(weight: float) -> None:
     want, found = may_start(alone), may_start(together)
     assert found.moves
     assert found.power == pytest.approx(want.power, rel=1e-4)
-    assert found.accelerations is not None
     assert np.abs(found.accelerations[-1]).max() == 0
     assert wrong(together, found) < 1e-6 * max(1.0, weight)
 
@@ -204,9 +197,7 @@ def test_what_rests_beside_it_hides_no_motion(weight: float) -> None:
 def test_the_motion_is_shown_and_goes_on_in_direct() -> None:
     said = check(beside(arch(3.0, 1.2, 7), 1e5), method="limit", must_rest=True)
     assert (said.verdict.value, said.rest) == ("stands", "can")
-    assert said.motion is not None
     assert said.motion.goes_on
-    assert said.mechanism is not None
     assert np.abs(said.mechanism[:-1]).max() > 0.1
     assert {joint.state.value for joint in said.joints} > {"closed"}
 

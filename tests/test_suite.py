@@ -294,7 +294,6 @@ def test_boxes_that_meet_keep_their_momentum() -> None:
     first, last = asked.poses[0], asked.poses[-1]
     way = mass @ (last - first)[:, 0]
     speed = asked.scene.moving[0].velocity
-    assert speed is not None
     assert way == pytest.approx(mass[0] * speed[0] * asked.scene.times[-1])
 
 

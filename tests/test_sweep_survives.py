@@ -61,7 +61,6 @@ def test_a_lock_left_by_a_killed_sweep_holds_nobody_up(tmp_path: Path) -> None:
     ]
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
     with subprocess.Popen([sys.executable, "-c", "\n".join(holder)], **pipes) as process:
-        assert process.stdout is not None
         assert process.stdout.readline() == b"held\n"
         with pytest.raises(InputError, match="no other sweep"), locked(tmp_path):
             pass
@@ -128,7 +127,6 @@ def test_a_terminated_sweep_ends_with_one_line(tmp_path: Path) -> None:
         until(lambda: shards(out) > 0, driver)
         workers = children(driver.pid)
         driver.terminate()
-        assert driver.stderr is not None
         assert driver.stderr.read() == b"blocksim: interrupted\n"
         assert driver.wait() == 143
     until(lambda: not any(alive(pid) for pid in workers))

@@ -63,7 +63,6 @@ def test_kept_bands_end_where_the_closed_form_says_or_before() -> None:
             continue
         if float(mu) * math.tan(alpha / n) >= 1:
             end = closed_end(n, alpha, float(mu), float(row["eta_limit"]))
-            assert end is not None
             moves, rests = float(row["eta_moves"]), float(row["eta_rests"])
             assert moves <= end
             if moves == pytest.approx(end, rel=5e-4):

@@ -57,7 +57,6 @@ def arch(case: ChartArch, ratio: float) -> Arch:
 
 def off_theory(case: ChartArch, voussoirs: int) -> float:
     continuous = theory.least_thickness(case.half_angle, case.mu).eta
-    assert continuous is not None
     return abs(least(case, voussoirs) / continuous - 1)
 
 

@@ -27,9 +27,7 @@ import math
 
 import numpy as np
 import pytest
-from derivations import lower_thrust, tangency_thrust, whole_thrust
-from hypothesis import given
-from hypothesis import strategies as st
+from derivations import lower_thrust, whole_thrust
 from scipy.optimize import brentq
 
 from blocksim import Mode
@@ -105,11 +103,3 @@ def test_couplet_and_heyman_are_unsafe() -> None:
     assert math.degrees(beta) == pytest.approx(58.8, abs=0.05)
     assert heyman_eta(beta) == pytest.approx(0.1060, abs=5e-5)
     assert couplet < heyman_eta(beta) < least
-
-
-@given(st.floats(20, 85))
-def test_the_true_hinge_asks_for_the_most(degrees: float) -> None:
-    least = theory.least_thickness(QUARTER, math.inf)
-    assert hinged_at(math.radians(degrees)) <= least.eta + 1e-12
-    assert hinged_at(least.beta_r) == pytest.approx(least.eta, rel=1e-12)
-    assert tangency_thrust(least.beta_r, least.eta) == pytest.approx(least.thrust, rel=1e-10)
