@@ -9,8 +9,7 @@ from scipy.optimize import brentq
 
 from blocksim import Arch
 from blocksim.arch.limit.mechanism import mechanism
-from blocksim.arch.theory.equations import Value, normal_force, shape
-from blocksim.arch.theory.lines import section_moment
+from blocksim.arch.theory.equations import Value, shape
 
 
 def lower_thrust(beta: Value, eta: Value) -> Value:
@@ -37,27 +36,6 @@ def whole_thrust(half_angle: Value, eta: Value) -> Value:
 def tangency_thrust(beta: Value, eta: Value) -> Value:
     """Thrust whose line is tangent to the intrados at beta, h_e (4)."""
     return beta / np.tan(beta) - eta / (2 - eta)
-
-
-def thrust_line_slope(
-    angle: Value, thrust: Value, crown_moment: Value, eta: Value, weight: str = "centreline"
-) -> Value:
-    """Differentiate `thrust_line` by the angle, (12)."""
-    factor = 1.0 if weight == "centreline" else 1.0 + eta**2 / 12
-    force = normal_force(angle, thrust)
-    rate = (1 - thrust) * np.sin(angle) + angle * np.cos(angle)
-    moment = section_moment(angle, thrust, crown_moment, eta, weight)
-    moment_rate = factor * np.sin(angle) - rate
-    return -(moment_rate * force - moment * rate) / (force**2 * eta / 2)
-
-
-def friction_line_slope(angle: Value, thrust: Value, mu: Value) -> Value:
-    """Differentiate `friction_line` by the angle, (14)."""
-    force = normal_force(angle, thrust)
-    shear = thrust * np.sin(angle) - angle * np.cos(angle)
-    rate = (1 - thrust) * np.sin(angle) + angle * np.cos(angle)
-    shear_rate = (thrust - 1) * np.cos(angle) + angle * np.sin(angle)
-    return -(shear_rate * force - shear * rate) / (mu * force**2)
 
 
 def least_thickness_by_program(
