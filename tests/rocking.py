@@ -35,6 +35,21 @@ def block(width: float = 1.0, height: float = 4.0, mu: float = 2.0) -> Problem:
     return structure_of({"friction": mu, "blocks": [floor, {"id": 1, "vertices": corners}]})
 
 
+def on_shaking_ground(problem: Problem, **shake: object) -> Problem:
+    """The same on ground that shakes, as a structure file says how."""
+    return structure_of(problem.to_dict() | {"shake": shake})
+
+
+def on_pulse(problem: Problem, shape: str, amplitude: float, duration: float) -> Problem:
+    """The same on ground that shakes by one pulse [g, s]."""
+    return on_shaking_ground(problem, shape=shape, amplitude_g=amplitude, duration_s=duration)
+
+
+def on_record(problem: Problem, times: np.ndarray, values: np.ndarray) -> Problem:
+    """The same on ground that shakes by a record [s, g]."""
+    return on_shaking_ground(problem, times_s=times.tolist(), accelerations_g=values.tolist())
+
+
 @dataclass
 class Rocks:
     """What became of it."""

@@ -12,10 +12,10 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 from recorded import recorded
+from rocking import on_pulse
 
 import blocksim
 from blocksim import JointState, Recording
-from blocksim.blocks.shaking import Shaking
 from blocksim.view.drawing import words_of
 from blocksim.view.film import Film
 from blocksim.view.following import FARTHEST
@@ -178,8 +178,9 @@ def test_loads_are_drawn_where_they_act_and_go_with_their_blocks(tmp_path: Path)
 
 def test_the_pulse_has_its_mark_at_the_time_shown() -> None:
     """A half sine of 0.4 g for a second: the words say its value, the marks stand still."""
-    shaking = Shaking(shape="half-sine", amplitude=0.4, duration=1.0)
-    problem = replace(blocksim.load("column", friction=0.7), shaking=shaking)
+    column = blocksim.load("column", friction=0.7)
+    problem = on_pulse(column, "half-sine", 0.4, 1.0)
+    shaking = problem.shaking
     count = len(problem.assembly.blocks)
     times = np.linspace(0, 1.6 / math.sqrt(problem.assembly.size / 9.81), 33)
     film = Film([recorded(problem, np.zeros((33, count, 3)), times)], height=720)

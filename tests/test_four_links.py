@@ -12,8 +12,7 @@ from analysis import oppenheim
 from analysis.convergence import world
 from analysis.rows import FIGURES, read_kept
 from analysis.shaking import ARCH
-from blocksim import structure_of
-from blocksim.simulation.shaken import shake
+from blocksim import simulate, structure_of
 
 
 def test_the_equation_starts_as_published_and_keeps_energy() -> None:
@@ -58,7 +57,7 @@ def test_a_push_turns_the_arch_as_the_equation_says() -> None:
     ground = oppenheim.motions()[name]
     problem = replace(structure_of({**ARCH, "friction": oppenheim.MU}), shaking=ground)
     until = ground.duration / problem.seconds
-    seen = shake(problem, "direct", until=until, repeat=False).recording
+    seen = simulate(problem, method="direct", duration=until)
     arch = Arch()
     truth = arch.rocks(lambda _: 0.4 * arch.gravity, 1.4, 0.01)
     wanted = np.interp(seen.times * problem.seconds, truth.times, truth.angles)

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rocking import on_record
 from running import inside
 from structure_cases import case, scenes
 
 from blocksim import InputError, fragility, structure_of
-from blocksim.blocks.shaking import table_of
 
 NAME = "pulse_1x4_05"
 LEAST = float(case(NAME)["expected"]["least_duration_s"])
@@ -24,7 +24,8 @@ def test_the_share_that_falls_is_that_of_pulses_long_enough() -> None:
     problem = replace(structure_of(scenes(NAME)[0]), shaking=None)
     shares = (0.9, 1.05)
     records = {
-        f"{share:g}": table_of(np.array([0, share * LEAST]), np.ones(2)) for share in shares
+        f"{share:g}": on_record(problem, np.array([0, share * LEAST]), np.ones(2)).shaking
+        for share in shares
     }
     # Below 0.25 g nothing starts to rock.
     found = fragility(problem, records, [0.2, 0.5], method="direct")
@@ -56,6 +57,6 @@ def test_amplitudes_have_to_grow() -> None:
     with pytest.raises(InputError, match="growing"):
         fragility(
             structure_of(scenes(NAME)[0]),
-            {"a": table_of(np.array([0, 1]), np.ones(2))},
+            {"a": on_record(structure_of(scenes(NAME)[0]), np.arange(2), np.ones(2)).shaking},
             [0.2, 0.1],
         )

@@ -438,7 +438,7 @@ def test_every_kind_stands_as_it_comes(name: str) -> None:
     assert problem.title == name
     assert not {*fields_of(KINDS[name])} & {*AROUND, "kind", "blocks"}
     assert structure_of({**problem.maker.table(), "friction": 0.7}).maker == problem.maker
-    again = structure.structure_of(structure.structure_record(problem))
+    again = structure.structure_of(problem.to_dict())
     assert again.assembly.centres == pytest.approx(problem.assembly.centres, abs=1e-12)
     assert len(again.assembly.joints) == len(problem.assembly.joints)
 

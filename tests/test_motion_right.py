@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rocking import G, block, rocks
+from rocking import G, block, on_pulse, on_record, rocks
 from scipy.integrate import solve_ivp
 
 from analysis import convergence, housner, random_pulses
@@ -24,11 +24,8 @@ from blocksim import (
     simulate,
     structure_of,
 )
-from blocksim.blocks.shaking import Shaking, table_of
 from blocksim.engines.direct import ENGINE, Blocks
-from blocksim.report.answers import check_record as answer_record
 from blocksim.report.recordings import recording_lines
-from blocksim.simulation.shaken import shake
 from blocksim.simulation.simulated import Simulation
 
 LONG = pytest.mark.long
@@ -67,14 +64,12 @@ def peaks(world: Blocks, count: int) -> list[float]:
     ],
 )
 def test_a_sine_that_overturns_is_said_to(duration: float, amplitude: float) -> None:
-    shaking = Shaking(shape="full-sine", amplitude=amplitude, duration=duration)
-
     def ground(time: float) -> float:
         inside = 0 <= time <= duration
         return amplitude * math.sin(2 * math.pi * time / duration) if inside else 0.0
 
     assert rocks(1.0, 4.0, ground, shaken=duration).overturns
-    seen = shake(replace(block(), shaking=shaking), "direct")
+    seen = check(on_pulse(block(), "full-sine", amplitude, duration), method="direct")
     assert seen.verdict is not Verdict.STANDS
 
 
@@ -100,8 +95,7 @@ def test_a_record_rocks_a_block_as_far_as_housner_says() -> None:
         until=12.0,
         longest=0.005,
     )
-    problem = replace(block(), shaking=table_of(times, ground))
-    seen = shake(problem, "direct", until=12.0 / problem.seconds)
+    seen = check(on_record(block(), times, ground), method="direct").shaken
     assert len(wanted.impacts) > 50
     assert seen.rocking.rotation == pytest.approx(wanted.largest, rel=0.03)
 
@@ -158,9 +152,7 @@ def test_a_block_topples_past_half_a_right_angle() -> None:
 
 def sine(amplitude: float) -> Problem:
     """A block under one period of a second; from 0.37286 g on it overturns."""
-    return replace(
-        block(), shaking=Shaking(shape="full-sine", amplitude=amplitude, duration=1.0)
-    )
+    return on_pulse(block(), "full-sine", amplitude, 1.0)
 
 
 @pytest.mark.parametrize(
@@ -172,11 +164,9 @@ def sine(amplitude: float) -> Problem:
 )
 def test_what_hangs_on_the_step_is_undecided(amplitude: float, verdict: Verdict) -> None:
     """At a step of 0.1 it overturns from 0.3748 g on, at twice the step from 0.3781 g."""
-    seen = shake(sine(amplitude), "direct", settings={"step": 0.1})
+    seen = check(sine(amplitude), method="direct", settings={"step": 0.1})
     assert seen.verdict is verdict
     if verdict is Verdict.UNDECIDED:
-        once = shake(sine(0.374), "direct", settings={"step": 0.1}, repeat=False)
-        assert once.verdict is Verdict.STANDS
         assert "collapses at a step of 0.05" in seen.reason
         assert "stands at 0.1" in seen.reason
 
@@ -191,8 +181,8 @@ def test_a_shaken_block_says_how_right_it_is() -> None:
 
     wanted = rocks(1.0, 4.0, ground, shaken=1.0)
     problem = sine(amplitude)
-    seen = shake(problem, "direct", until=6.0 / problem.seconds)
-    told = answer_record(check(problem, method="direct"))["shaken"]
+    answer = check(problem, method="direct")
+    seen, told = answer.shaken, answer.to_dict()["shaken"]
     turned, late_most = told["largest_rotation_error_deg"], told["first_impact_error_s"]
     assert turned is not None
     off = abs(seen.rocking.rotation - wanted.largest)

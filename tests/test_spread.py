@@ -17,7 +17,6 @@ from structure_cases import case
 from blocksim import InputError, JointState, bracket, load_recording, structure_of
 from blocksim.ask.spread import Spreading
 from blocksim.blocks.joints import joint_motion
-from blocksim.blocks.structure import structure_record
 from blocksim.engines.direct import ENGINE
 from blocksim.engines.moving import OnMovingSupports
 from blocksim.limit.spreading import follow
@@ -333,7 +332,7 @@ def test_on_the_command_line(tmp_path: Path) -> None:
 def test_moves_are_written_back() -> None:
     moves = [{"block": "right", "direction": [0.0, -1.0], "turn_deg": 5.0, "about": [1.0, 0.0]}]
     problem = structure_of(semicircle(0.15, move=moves))
-    again = structure_of(structure_record(problem))
+    again = structure_of(problem.to_dict())
     assert again.moves[0].turn == pytest.approx(math.radians(5))
     assert again.moves[0].about == pytest.approx([1, 0])
 

@@ -14,7 +14,6 @@ from running import inside as blocksim
 from blocksim import Arch, CircularArch, InputError, Problem, check, equilibrium, structure_of
 from blocksim.arch.limit.statics import least_thickness
 from blocksim.ask.rest import FAR, SPEED, let_go
-from blocksim.blocks.structure import structure_record
 from blocksim.limit.starting import Start, may_start, rates_of
 from blocksim.view.sheet import answer_sheet
 
@@ -167,7 +166,7 @@ def test_elsewhere_there_is_no_band(alpha: float, mu: float) -> None:
 
 def beside(problem: Problem, weight: float) -> Problem:
     """The same with a block at rest on ground of its own, of so many times its weight."""
-    table = structure_record(problem)
+    table = problem.to_dict()
     total = sum(block.mass for block in problem.assembly.blocks) * 9.81
     table["blocks"] += [
         {"id": "bed", "vertices": [[9, -6], [10, -6], [10, -5], [9, -5]], "fixed": True},
@@ -204,7 +203,7 @@ def test_the_motion_is_shown_and_goes_on_in_direct() -> None:
 
 def test_what_a_heavy_block_that_it_touches_may_hide_is_not_told() -> None:
     """It hangs by friction between a wall and a block 1e5 times as heavy: it may fall."""
-    light = structure_record(between_walls(-0.2, 0.5))
+    light = between_walls(-0.2, 0.5).to_dict()
     for block in light["blocks"]:
         if block["id"] == "right":
             block.update(fixed=False, weight=1e5)

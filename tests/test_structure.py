@@ -13,7 +13,7 @@ import pytest
 from structure_cases import BESIDES, case, names, of_each_kind, scenes
 
 from blocksim import Arch, InputError, Load, Problem, load_structure
-from blocksim.blocks.structure import structure_of, structure_record
+from blocksim.blocks.structure import structure_of
 
 STACK: dict[str, Any] = {
     "friction": 0.6,
@@ -80,7 +80,7 @@ def test_every_case_reads_and_its_record_reads_back(name: str):
             if "weight" in written
         ]
         assert read == pytest.approx(weights, rel=1e-12)
-        same(problem, structure_of(json.loads(json.dumps(structure_record(problem)))))
+        same(problem, structure_of(json.loads(json.dumps(problem.to_dict()))))
 
 
 def test_there_are_cases():
@@ -93,7 +93,7 @@ def test_an_arch_can_be_recorded():
     """It has no bodies for its supports: they are made up, all else stays."""
     arch = Arch(half_angle=math.pi / 2, eta=0.12, voussoirs=9)
     problem = Problem(assembly=arch.assembly(), mu=0.7).leaning(0.1)
-    back = structure_of(json.loads(json.dumps(structure_record(problem))))
+    back = structure_of(json.loads(json.dumps(problem.to_dict())))
     same(problem, back)
     assert len(back.assembly.supports) == 2
 

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rocking import on_shaking_ground
 from running import inside
 
 from blocksim import (
@@ -29,9 +30,7 @@ from blocksim import (
     simulate,
     structure_of,
 )
-from blocksim.blocks.shaking import read_table, shaking_of, shaking_record, table_of
-from blocksim.blocks.structure import structure_record
-from blocksim.simulation.shaken import shake
+from blocksim.blocks.shaking import read_table
 
 G = 9.81
 BOTH = pytest.mark.parametrize("method", ["direct", "pymunk"])
@@ -100,7 +99,7 @@ def test_what_bounces_comes_back_to_the_square_of_the_restitution(
 def test_what_is_pushed_off_stops_as_friction_says(method: str) -> None:
     gravity = 3.71
     problem = block(wide=4, mu=0.3, velocity=(2.0, 0.0)).under(gravity)
-    seen = shake(problem, method)
+    seen = check(problem, method=method).shaken
     assert seen.verdict is Verdict.STANDS
     assert way(seen.recording)[-1, 0] == pytest.approx(4 / (2 * 0.3 * gravity), rel=4e-3)
     assert check(problem, method=method).evidence[0].test == "motion"
@@ -111,10 +110,10 @@ def test_what_is_pushed_off_stops_as_friction_says(method: str) -> None:
 def test_a_block_slides_as_ground_that_rises_or_falls_lets_it(method: str, up: float) -> None:
     # Ground goes by 0.5 g across and by `up` for a while, then at constant speed.
     mu, across, end = 0.3, 0.5, 0.6
-    times = np.array([0, end, end + 1e-9])
-    shaking = table_of(times, np.array([across, across, 0]), np.array([up, up, 0]))
-    problem = block(wide=6, mu=mu)
-    seen = shake(Problem(assembly=problem.assembly, mu=mu, shaking=shaking), method)
+    times = [0, end, end + 1e-9]
+    ground = {"accelerations_g": [across, across, 0], "verticals_g": [up, up, 0]}
+    problem = on_shaking_ground(block(wide=6, mu=mu), times_s=times, **ground)
+    seen = check(problem, method=method).shaken
     gains = (across - mu * (1 + up)) * G
     wanted = gains * end**2 / 2 + (gains * end) ** 2 / (2 * mu * G)
     assert way(seen.recording)[-1, 0] == pytest.approx(-wanted, rel=5e-3)
@@ -126,9 +125,9 @@ def test_least_friction_on_ground_that_rises_or_falls(method: str, up: float) ->
     # It holds what slides with mu = across / (1 + up).
     for share, rests in ((0.98, False), (1.02, True)):
         mu = share * 0.2 / (1 + up)
-        shaking = table_of(np.array([0, 1]), np.full(2, 0.2), np.full(2, up))
-        problem = block(wide=6)
-        seen = shake(Problem(assembly=problem.assembly, mu=mu, shaking=shaking), method)
+        ground = {"accelerations_g": [0.2, 0.2], "verticals_g": [up, up]}
+        problem = on_shaking_ground(block(wide=6, mu=mu), times_s=[0, 1], **ground)
+        seen = check(problem, method=method).shaken
         moved = abs(way(seen.recording)[:, 0]).max()
         assert moved < 1e-5 if rests else moved > 1e-3
 
@@ -143,7 +142,7 @@ def test_rocking_takes_as_long_as_gravity_says() -> None:
         # About its right-hand corner, clockwise.
         velocity = (turn * 2.0, turn * 0.5)
         problem = block(wide=1, tall=4, mu=5, velocity=velocity, spin_deg_s=-spin)
-        rocks = shake(problem.under(gravity), "direct", until=12.0, repeat=False)
+        rocks = check(problem.under(gravity), method="direct").shaken
         first = rocks.first_impact_s
         impacts.append(first * math.sqrt(gravity))
     assert np.ptp(impacts) < 1e-3 * impacts[0]
@@ -158,8 +157,9 @@ def test_a_record_with_a_vertical_part_is_read_and_written(
 ) -> None:
     times = (step * np.arange(len(values))).tolist()
     across, up = map(list, zip(*values, strict=True))
-    table = shaking_of(times_s=times, accelerations_g=across, verticals_g=up)
-    again = shaking_of(**shaking_record(table))
+    ground = {"times_s": times, "accelerations_g": across, "verticals_g": up}
+    problem = on_shaking_ground(block(), **ground)
+    table, again = problem.shaking, structure_of(problem.to_dict()).shaking
     for start, end in ((0.0, times[-1]), (step / 3, 1.5 * step)):
         fine = np.linspace(start, min(end, times[-1]), 4001)
         wanted = [np.trapezoid(np.interp(fine, times, each), fine) for each in (across, up)]
@@ -185,7 +185,7 @@ def test_a_record_of_three_columns(tmp_path: Path) -> None:
 
 def test_what_begins_in_motion_is_written_and_read(tmp_path: Path) -> None:
     problem = block(2.0, velocity=(1.0, -2.0), spin_deg_s=30.0).under(3.71)
-    again = structure_of(json.loads(json.dumps(structure_record(problem))))
+    again = structure_of(json.loads(json.dumps(problem.to_dict())))
     assert np.allclose(again.velocities, problem.velocities, atol=1e-14)
     assert np.allclose(again.gravity, problem.gravity)
     out = tmp_path / "thrown.npz"
@@ -201,7 +201,7 @@ def test_what_cannot_be_said_is_refused() -> None:
     for method in ("pymunk", "limit"):
         with pytest.raises(InputError, match="restitution"):
             check(block(), method=method, settings={"restitution": 0.5})
-    record = structure_record(block())
+    record = block().to_dict()
     floor = {
         "id": 9,
         "vertices": [[0, -9], [1, -9], [0, -8]],
@@ -216,7 +216,7 @@ def test_what_cannot_be_said_is_refused() -> None:
 
 def test_gravity_is_an_option_and_is_told(tmp_path: Path) -> None:
     path, out, poses = (tmp_path / name for name in ("thrown.json", "run.npz", "run.json"))
-    path.write_text(json.dumps(structure_record(block(5.0, velocity=(1.0, 0.0)))))
+    path.write_text(json.dumps(block(5.0, velocity=(1.0, 0.0)).to_dict()))
     inside("simulate", str(path), "--gravity", "1.62", "--seconds", "0.5", "--out", str(out))
     inside("render", str(out), "--out", str(poses))
     assert json.loads(poses.read_text())["gravity_m_s2"] == pytest.approx([0, -1.62, 0])
@@ -247,7 +247,7 @@ def test_gravity_in_space_is_told_and_in_a_file_is_the_same() -> None:
         inside("check", "tower", "--mu", "0.7", "--gravity", "3.71", "--json").stdout
     )
     assert said["problem"]["gravity_m_s2"] == pytest.approx([0, 0, -3.71])
-    on_file = structure_record(block()) | {"dead": [{"body": [0, -3.71 / G]}]}
+    on_file = block().to_dict() | {"dead": [{"body": [0, -3.71 / G]}]}
     assert np.allclose(structure_of(on_file).gravity, block().under(3.71).gravity, atol=1e-15)
 
 
