@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from blocksim import Joint, Load, Problem
-from blocksim.blocks.assembly import Support
 
 FLIP = np.array([-1.0, 1.0])
 
@@ -25,7 +24,7 @@ def mirrored(problem: Problem) -> Problem:
         for block in assembly.blocks
     )
     supports = tuple(
-        Support(tuple((part * FLIP)[::-1] for part in each.polygons), each.name)
+        type(each)(tuple((part * FLIP)[::-1] for part in each.polygons), each.name)
         for each in assembly.supports
     )
     joints = tuple(_image(joint) for joint in assembly.joints)

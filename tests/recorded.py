@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import io
+import json
 import re
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -26,6 +29,15 @@ def recorded(
         times=times,
         poses=problem.assembly.built[:-1, :3] + moved,
     )
+
+
+def header_of(recording: Recording) -> dict[str, Any]:
+    """What a recording's file says before its numbers."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "run.npz"
+        recording.save(path)
+        with np.load(path) as archive:
+            return json.loads(str(archive["header"]))
 
 
 def drawn_words(film: Any, at: float | None = None) -> list[str]:

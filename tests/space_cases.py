@@ -15,8 +15,7 @@ from scipy import sparse
 from scipy.optimize import linprog
 
 import blocksim
-from blocksim import Problem, Solid, Verdict
-from blocksim.blocks.space.files import problem_in_space
+from blocksim import Problem, Solid, Verdict, structure_of
 
 CASES = Path(__file__).parent / "structures" / "space"
 NAMES = sorted(path.stem for path in CASES.glob("*.json"))
@@ -33,7 +32,7 @@ def case(name: str) -> dict[str, Any]:
 def asked(name: str, beside: float) -> list[tuple[Problem[Any], Verdict]]:
     """A case with its verdict, or at its load factor less and more by a share."""
     known = case(name)
-    problem, value = problem_in_space(known["scene"]), known["expected"]["value"]
+    problem, value = structure_of(known["scene"]), known["expected"]["value"]
     if known["question"] == "stands":
         return [(problem, Verdict.STANDS if value else Verdict.COLLAPSES)]
     return [

@@ -19,10 +19,9 @@ from typing import Any
 import ezdxf
 import numpy as np
 from hypothesis import strategies as st
-from recorded import recorded
+from recorded import header_of, recorded
 
 from blocksim import Arch, CircularArch
-from blocksim.blocks.record import to_record
 
 
 @dataclass(frozen=True)
@@ -220,12 +219,7 @@ def _recording() -> tuple[dict[str, Any], Any, Any]:
     times = np.linspace(0.0, 0.5, 6)
     moved = times[:, None, None] ** 2 * np.array([0.3, -0.5, 0.4])
     made = recorded(CircularArch.of(arch, 0.7).problem(), moved, times)
-    header = {
-        "format": 2, "problem": to_record(made.problem), "engine": "pymunk",
-        "engine_version": "7.3", "settings": to_record(made.settings), "quality": {},
-        "state_hash": made.state_hash,
-    }  # fmt: skip
-    return header, times, made.poses
+    return header_of(made), times, made.poses
 
 
 def packed(header: Any, times: Any, poses: Any) -> bytes:

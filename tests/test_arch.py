@@ -17,7 +17,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from blocksim import Arch, Assembly, Block, InputError, Joint
-from blocksim.blocks.assembly import JointArrays
 
 arches = st.builds(
     Arch,
@@ -221,7 +220,7 @@ def test_arrays_are_those_of_its_voussoirs(arch: Arch) -> None:
     for name in ("centres", "masses", "depths", "reach"):
         assert np.array_equal(getattr(assembly, name), getattr(made, name)), name
     for name, mine, its in zip(
-        JointArrays._fields, assembly.joint_arrays, made.joint_arrays, strict=True
+        assembly.joint_arrays._fields, assembly.joint_arrays, made.joint_arrays, strict=True
     ):
         assert np.array_equal(mine, its, equal_nan=name == "friction"), name
 

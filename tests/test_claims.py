@@ -11,7 +11,6 @@ import pytest
 
 from blocksim import CircularArch, EllipticArch, Portal, Problem, check, load
 from blocksim.ask.families import family_of
-from blocksim.ask.options import problem_of
 from blocksim.view.placing import distance_of
 from blocksim.view.sheet import answer_sheet
 from blocksim.view.sheetfigure import sheet_figure
@@ -93,16 +92,16 @@ def mirrored(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
 
 def thin_portal() -> Problem:
     arch = CircularArch(half_angle_deg=90, radius=1, thickness=0.2, voussoirs=15)
-    return problem_of(Portal(arch=arch, pier_width=0.3, pier_height=3, friction=0.7))
+    return Portal(arch=arch, pier_width=0.3, pier_height=3, friction=0.7).problem()
 
 
 SYMMETRIC: dict[str, Callable[[], Problem]] = {
     "pointed arch": lambda: load("pointed_e0_25"),
     "two spans": lambda: load("two_spans_load_b9"),
     "upright joints": lambda: load("semicircle_vertical_joints"),
-    "thin ellipse": lambda: problem_of(
-        EllipticArch(span=2.0, rise=0.7, thickness=0.03, voussoirs=21, friction=0.7)
-    ),
+    "thin ellipse": EllipticArch(
+        span=2.0, rise=0.7, thickness=0.03, voussoirs=21, friction=0.7
+    ).problem,
     "thin portal": thin_portal,
 }
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from kind_cases import CATENARY, FACTORS, LEAST, PIERS, STACKS
+from kind_cases import CATENARY, FACTORS, KINDS, LEAST, PIERS, PLANAR, STACKS
 from running import inside
 from scipy.special import ellipe
 from structure_cases import case, of_each_kind, scenes
@@ -27,12 +27,10 @@ from blocksim import (
     equilibrium,
     structure_of,
 )
-from blocksim.blocks import structure
 from blocksim.blocks.entries import AROUND
 from blocksim.blocks.polygons import assembly_of_bodies
 from blocksim.blocks.record import from_record, to_record
 from blocksim.common.fields import fields_of
-from blocksim.kinds import KINDS
 from blocksim.kinds.archkind import ArchKind, CurvedArch
 from blocksim.kinds.loading import maker_of
 
@@ -78,7 +76,7 @@ def test_arches_whose_least_thickness_is_known(name: str) -> None:
     least = case(name)["expected"]["value"]
     for told, scene in zip(case(name)["scenes"], scenes(name), strict=True):
         around = {"friction": scene["friction"]}
-        read = structure.structure_of(scene)
+        read = structure_of(scene)
         thickness = read.assembly.joints[0].length
         made = structure_of({**LEAST[name], **around, "thickness": thickness})
         assert_same_blocks(made, read, name)
@@ -90,7 +88,7 @@ def test_arches_whose_least_thickness_is_known(name: str) -> None:
 def test_a_catenary_stands_however_thin() -> None:
     for thickness, scene in zip((0.005, 0.05), scenes("catenary"), strict=True):
         table = {**CATENARY, "friction": scene["friction"], "thickness": thickness}
-        assert_same_blocks(structure_of(table), structure.structure_of(scene), "catenary")
+        assert_same_blocks(structure_of(table), structure_of(scene), "catenary")
         assert equilibrium(structure_of(table)).exists
 
 
@@ -98,7 +96,7 @@ def test_a_catenary_stands_however_thin() -> None:
 def test_structures_whose_load_factor_is_known(name: str) -> None:
     (scene,) = scenes(name)
     made = structure_of({**FACTORS[name], "friction": scene["friction"]})
-    assert_same_blocks(made, structure.structure_of(scene), name)
+    assert_same_blocks(made, structure_of(scene), name)
     expected = case(name)["expected"]["value"]
     assert collapse(made).load_factor == pytest.approx(expected, rel=1e-6)
 
@@ -107,7 +105,7 @@ def test_structures_whose_load_factor_is_known(name: str) -> None:
 def test_piers_whose_least_width_is_known(name: str) -> None:
     least = case(name)["expected"]["value"]
     for told, scene in zip(case(name)["scenes"], scenes(name), strict=True):
-        read = structure.structure_of(scene)
+        read = structure_of(scene)
         foot = np.ptp(in_order(read)[0].vertices[:, 0])
         table = {**PIERS[name], "friction": scene["friction"], "pier_width": float(foot)}
         made = structure_of(table)
@@ -120,7 +118,7 @@ def test_piers_whose_least_width_is_known(name: str) -> None:
 @pytest.mark.parametrize("name", of_each_kind(STACKS))
 def test_stacks_that_are_known_to_stand_or_to_fall(name: str) -> None:
     for told, scene in zip(case(name)["scenes"], scenes(name), strict=True):
-        read = structure.structure_of(scene)
+        read = structure_of(scene)
         table = {**STACKS[name], "friction": scene["friction"]}
         if name.startswith("harmonic"):
             corners = np.concatenate([block.vertices for block in read.assembly.blocks])
@@ -133,7 +131,7 @@ def test_stacks_that_are_known_to_stand_or_to_fall(name: str) -> None:
 def test_a_column_overturns_about_its_base() -> None:
     (scene,) = scenes("column_six_drums")
     column = structure_of({"kind": "column", "friction": scene["friction"]})
-    assert_same_blocks(column, structure.structure_of(scene), "column", moved=True)
+    assert_same_blocks(column, structure_of(scene), "column", moved=True)
     tilt = math.radians(case("column_six_drums")["expected"]["value"])
     assert equilibrium(column.tilted(tilt * (1 - 1e-6))).exists
     assert not equilibrium(column.tilted(tilt * (1 + 1e-6))).exists
@@ -430,7 +428,7 @@ def test_origins_are_kept_and_read_back() -> None:
         structure_of({"kind": "wall", "friction": 1.0, "length": 1.9}).but(courses=7)
 
 
-@pytest.mark.parametrize("name", [name for name, kind in KINDS.items() if not kind.in_space])
+@pytest.mark.parametrize("name", PLANAR)
 def test_every_kind_stands_as_it_comes(name: str) -> None:
     """Its defaults are an example; and a structure file of its blocks is the same."""
     problem = structure_of({"kind": name, "friction": 0.7})
@@ -438,7 +436,7 @@ def test_every_kind_stands_as_it_comes(name: str) -> None:
     assert problem.title == name
     assert not {*fields_of(KINDS[name])} & {*AROUND, "kind", "blocks"}
     assert structure_of({**problem.maker.table(), "friction": 0.7}).maker == problem.maker
-    again = structure.structure_of(problem.to_dict())
+    again = structure_of(problem.to_dict())
     assert again.assembly.centres == pytest.approx(problem.assembly.centres, abs=1e-12)
     assert len(again.assembly.joints) == len(problem.assembly.joints)
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from kind_cases import KINDS
 from report_rows import ROW
 from running import inside as blocksim
 from space_cases import NAMES as SPACE_NAMES
@@ -21,7 +22,6 @@ from test_report import MAP, Page
 from blocksim import InputError, JointState, Verdict, load_structure
 from blocksim.ask.families import families_of
 from blocksim.engines import ENGINES
-from blocksim.kinds import KINDS
 from blocksim.kinds.files import shipped_structures
 from blocksim.kinds.loading import load_known
 from blocksim.kinds.scenarios import shipped

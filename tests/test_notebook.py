@@ -21,7 +21,6 @@ from running import inside
 
 import blocksim
 from blocksim import Arch, CircularArch, bracket, check, collapse, load_structure, structure_of
-from blocksim.notebook import svg_of
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")
@@ -251,12 +250,6 @@ def test_importing_blocksim_draws_nothing() -> None:
         [sys.executable, "-c", code], capture_output=True, text=True, check=False
     )
     assert done.stdout.split() == ["False", "True", "False"], done.stderr
-
-
-def test_the_last_drawing_is_made_once(shown: dict[str, Any]) -> None:
-    svg_of.cache_clear()
-    formatters.DisplayFormatter().format(shown["arch"])
-    assert svg_of.cache_info().misses == 1
 
 
 def test_all_that_is_public_is_there() -> None:

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,6 @@ from running import inside
 from windows import new_page
 
 from blocksim import Recording, load_recording, simulate, structure_of
-from blocksim.view.models import write_model
 
 HERE = Path(__file__).parent / "gltf"
 SIZE, G = 2.0, 9.81
@@ -180,9 +180,11 @@ def parts_of(data: bytes) -> tuple[dict, bytes]:
 
 
 def written(recording: Recording, kind: str = "glb") -> bytes:
-    file = BytesIO()
-    write_model(recording, file, kind)
-    return file.getvalue()
+    with TemporaryDirectory() as folder:
+        run, out = Path(folder) / "run.npz", Path(folder) / f"run.{kind}"
+        recording.save(run)
+        assert inside("render", str(run), "--out", str(out)).returncode == 0
+        return out.read_bytes()
 
 
 def accessor(document: dict, numbers: bytes, index: int) -> np.ndarray:

@@ -18,6 +18,7 @@ from rocking import block, on_pulse, on_record, rocks
 from running import inside
 from scipy.integrate import quad
 from structure_cases import case, scenes
+from sweeps import design_of, rows_of
 
 from blocksim import (
     InputError,
@@ -30,7 +31,6 @@ from blocksim import (
     structure_of,
     sweep,
 )
-from blocksim.sweeps import load_design, read_rows
 
 
 def shaken(name: str, share: float) -> Problem:
@@ -225,13 +225,13 @@ def test_an_amplitude_is_bracketed(method: str, confirm: bool) -> None:
 
 @pytest.mark.usefixtures("in_this_process")
 def test_a_sweep_maps_amplitude_against_duration(tmp_path: Path) -> None:
-    (tmp_path / "map.toml").write_text(
+    text = (
         'kind = "column"\ndrums = 1\ndrum_height = 4.0\nwidth = 1.0\nmu = 2.0\n'
         'shake = "constant"\namplitude_g = [0.2, 0.5]\nduration_s = [0.42]\n'
         'method = "pymunk"\n'
     )
-    sweep(load_design(tmp_path / "map.toml"), tmp_path / "rows", workers=1)
-    rows = list(read_rows(tmp_path / "rows"))
+    sweep(design_of(tmp_path, text), tmp_path / "rows", workers=1)
+    rows = rows_of(tmp_path / "rows").values()
     found = {(row["amplitude_g"], row["duration_s"]): row["verdict"] for row in rows}
     assert found == {(0.2, 0.42): "stands", (0.5, 0.42): "collapses"}
     turned = {row["amplitude_g"]: float(str(row["largest_rotation_deg"])) for row in rows}
@@ -241,10 +241,8 @@ def test_a_sweep_maps_amplitude_against_duration(tmp_path: Path) -> None:
         ('shake = "wobble"', "shake = 'wobble': must be one of constant"),
         ("", "amplitude_g = 'given': must be left out: no shake"),
     ):
-        text = (tmp_path / "map.toml").read_text().replace('shake = "constant"', line)
-        (tmp_path / "wrong.toml").write_text(text)
         with pytest.raises(InputError, match=said):
-            load_design(tmp_path / "wrong.toml")
+            design_of(tmp_path, text.replace('shake = "constant"', line))
 
 
 def test_an_arch_that_falls_anyway_falls_on_ground_that_shakes() -> None:

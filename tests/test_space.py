@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from kind_cases import KINDS
 from matplotlib.collections import PolyCollection
 from running import inside
 from space_cases import CASES, GROUND, NAMES, box, case, enclosed, problem_of, rotation, tower
@@ -36,11 +37,10 @@ from blocksim import (
     Tower,
     Verdict,
     extruded,
+    structure_of,
 )
-from blocksim.blocks.space.files import problem_in_space
 from blocksim.blocks.space.polyhedron import frame
 from blocksim.common.fields import fields_of
-from blocksim.kinds import KINDS
 from blocksim.limit.space import can_rest, largest_load
 from blocksim.view.solidfigure import solid_figure
 from blocksim.view.solidscene import pressed
@@ -53,7 +53,7 @@ SOLID_KINDS = {name: kind for name, kind in KINDS.items() if kind.in_space}
 def test_a_case_has_its_value_verdict_and_joints(name: str) -> None:
     """Each of the 55 cases, by the public reader and verb."""
     known = case(name)
-    problem = problem_in_space(known["scene"])
+    problem = structure_of(known["scene"])
     answer = blocksim.check(problem)
     if "faces" in known:
         assert len(problem.assembly.joints) == known["faces"]
@@ -69,7 +69,7 @@ def test_a_case_has_its_value_verdict_and_joints(name: str) -> None:
 
 def test_the_forces_of_a_case_balance_and_lie_within_friction() -> None:
     """Summed again from the forces at the points, in N."""
-    problem = problem_in_space(case("dome_12_7_stands")["scene"])
+    problem = structure_of(case("dome_12_7_stands")["scene"])
     static, assembly = can_rest(problem), problem.assembly
     left = problem.applied_forces() * assembly.units
     at = 0
@@ -94,7 +94,7 @@ def corbelled(share: float) -> Problem[Any]:
 
 
 FALLING = {
-    "dome": lambda: problem_in_space(case("dome_12_7_falls")["scene"]),
+    "dome": lambda: structure_of(case("dome_12_7_falls")["scene"]),
     # Nearly all points slide; most hardly open.
     "0.1 % beyond": lambda: corbelled(1.001),
 }
@@ -293,7 +293,7 @@ def test_a_survey_with_few_decimals_has_the_same_joints(decimals: int) -> None:
         {**block, "vertices": np.round(np.array(block["vertices"]), decimals).tolist()}
         for block in written
     ]
-    problem = problem_in_space({**known["scene"], "blocks": blocks})
+    problem = structure_of({**known["scene"], "blocks": blocks})
     assert len(problem.assembly.joints) == known["faces"]
     factor = blocksim.check(problem).load_factor
     assert factor == pytest.approx(
@@ -347,7 +347,7 @@ def test_a_skew_arch_is_that_of_the_case() -> None:
     """Its load factor at the crown, with the loads of the case."""
     known = case("arch_15_skew_30_crown")
     problem = SkewArch(radius=4.45, friction=known["scene"]["friction"]).problem()
-    loads = problem_in_space(known["scene"]).live
+    loads = structure_of(known["scene"]).live
     factor = blocksim.check(replace(problem, live=loads)).load_factor
     assert factor == pytest.approx(known["expected"]["value"], rel=1e-6)
 

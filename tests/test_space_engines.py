@@ -8,7 +8,6 @@ from space_cases import asked
 
 import blocksim
 from blocksim import Verdict
-from blocksim.engines import get_engine
 from blocksim.simulation.observation import observe
 
 ENGINES = ("pybullet", "mujoco")
@@ -41,7 +40,7 @@ def test_no_case_is_told_falsely(case: str, name: str) -> None:
     """What an engine does not find is open, never false; by the onset test."""
     pytest.importorskip(name, exc_type=ImportError)
     for problem, verdict in asked(case, 0.01):
-        seen = observe(problem, get_engine(name), moving=False)
+        seen = observe(problem, name, moving=False)
         assert seen.verdict in (verdict, Verdict.UNDECIDED)
 
 

@@ -15,22 +15,18 @@ from scipy.integrate import solve_ivp
 from space_cases import GROUND, NAMES, asked, box, case, problem_of
 
 import blocksim
-from blocksim import Dome, InputError, Problem, Solid, extruded
-from blocksim.blocks.space.files import problem_in_space
-from blocksim.engines import get_engine
+from blocksim import Dome, InputError, Problem, Solid, extruded, structure_of
 from blocksim.engines.direct import USUAL
 from blocksim.engines.solid.stepping import SolidBlocks
 from blocksim.simulation.observation import observe
 from blocksim.view.film import Film
-
-DIRECT = get_engine("direct")
 
 
 @pytest.mark.parametrize("name", NAMES[::3])
 def test_direct_tells_a_case_a_thousandth_to_both_sides(name: str) -> None:
     """By the onset test; the study `space_cases` asks about all 55."""
     for problem, verdict in asked(name, 0.001):
-        assert observe(problem, DIRECT, moving=False).verdict is verdict
+        assert observe(problem, "direct", moving=False).verdict is verdict
 
 
 @pytest.mark.parametrize(
@@ -47,7 +43,7 @@ def test_what_is_let_go_does_what_the_onset_test_said(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES[::3])
 def test_blocks_meet_where_their_joints_are(name: str) -> None:
     """Two ways to find points of contact: of blocks as built, and of blocks that move."""
-    stepping = SolidBlocks(problem_in_space(case(name)["scene"]), USUAL)
+    stepping = SolidBlocks(structure_of(case(name)["scene"]), USUAL)
     points, _ = stepping._points(stepping._place, 0.0)
     closed = int((points.gaps < 1e-6).sum())
     joints = stepping.bodies.problem.assembly.joints
@@ -181,7 +177,7 @@ def test_a_dome_that_is_too_thin_falls_to_the_ground() -> None:
 
 def falling_tower() -> Problem[Any]:
     """A case that topples at once."""
-    return problem_in_space(case("tower_113")["scene"])
+    return structure_of(case("tower_113")["scene"])
 
 
 def test_a_film_keeps_all_blocks_in_frame_and_says_whether_they_move() -> None:
@@ -203,7 +199,7 @@ def test_a_film_keeps_all_blocks_in_frame_and_says_whether_they_move() -> None:
 
 def test_a_film_of_what_stands_is_at_rest() -> None:
     """Every frame is as the first, but for the clock."""
-    problem = problem_in_space(case("tower_103")["scene"])
+    problem = structure_of(case("tower_103")["scene"])
     recording = blocksim.simulate(problem, method="direct", duration=0.5)
     film = Film([recording], height=180)
     assert film.speed == 0

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from kind_cases import KINDS, PLANAR
 from running import inside
 from scipy.optimize import linprog
 
 from blocksim import CircularArch, Column, equilibrium
 from blocksim.ask.moved import spread_by, thrusts_over
 from blocksim.ask.push import borne, curve, pushed
-from blocksim.kinds import KINDS
 
 
 def asked(*options: str, code: int = 0) -> dict[str, Any]:
@@ -64,7 +64,7 @@ def test_the_push_on_a_rocking_block_falls_as_its_angle(way: str) -> None:
         assert push == pytest.approx(math.tan(left), abs=2e-5)
 
 
-@pytest.mark.parametrize("kind", sorted(n for n, kind in KINDS.items() if not kind.in_space))
+@pytest.mark.parametrize("kind", PLANAR)
 def test_every_kind_is_pushed_both_ways(kind: str) -> None:
     """What is borne is the change from standing to falling, whatever is built."""
     problem = KINDS[kind](friction=0.7).problem()

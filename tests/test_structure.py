@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 from structure_cases import BESIDES, case, names, of_each_kind, scenes
 
-from blocksim import Arch, InputError, Load, Problem, load_structure
-from blocksim.blocks.structure import structure_of
+from blocksim import Arch, InputError, Load, Problem, load_structure, structure_of
 
 STACK: dict[str, Any] = {
     "friction": 0.6,
