@@ -273,18 +273,6 @@ def test_costs_are_measured_and_answers_right(tmp_path: Path) -> None:
     assert all(row["date"] and row["machine"] for row in rows)
 
 
-def test_a_hash_of_code_tells_another_code(tmp_path: Path) -> None:
-    rows = study("rows")
-    (tmp_path / "one.py").write_text("1\n")
-    before = rows.code_hash(tmp_path)
-    assert rows.code_hash(tmp_path) == before
-    (tmp_path / "one.py").write_text("2\n")
-    assert rows.code_hash(tmp_path) != before
-    (tmp_path / "one.py").write_text("1\n")
-    (tmp_path / "one.py").rename(tmp_path / "two.py")
-    assert rows.code_hash(tmp_path) != before
-
-
 def test_structures_with_known_answers_are_answered_right(tmp_path: Path) -> None:
     study_of = study("structure_cases")
     result = study_of.main(tmp_path, quick=True)
@@ -416,36 +404,6 @@ def test_one_arch_falls_alike_side_by_side(tmp_path: Path) -> None:
     assert apart[0] < 1e-3
     assert min(apart[1:]) > 0.01
     assert (tmp_path / "engines.png").stat().st_size > 0
-
-
-def test_frames_of_the_gallery_hold_all_blocks() -> None:
-    """Standing and falling, in one frame, of the shape asked for."""
-    module = study("gallery")
-    shown = module.shown("gable")
-    problem, fall = shown.problem, shown.fall
-    frame = module._falling(fall)
-    assert 0.2 < float(fall.displacement[frame]) < 0.45
-    low, high = module._shaped(module._box(fall, (fall.poses[0], fall.poses[frame])), 1.2)
-    assert (high - low)[1] / (high - low)[0] == pytest.approx(1.2)
-    for pose in (fall.poses[0], fall.poses[frame]):
-        for parts in module._placed(fall, pose):
-            for part in parts:
-                assert (part > low).all()
-                assert (part < high).all()
-    rest = module._placed(fall, fall.poses[0])
-    built = [block.vertices for block in problem.assembly.blocks]
-    np.testing.assert_allclose([parts[0] for parts in rest], built, atol=1e-12)
-    # Forces hold what stands above; below nothing holds it any more.
-    axes = module.sheet([shown]).axes
-    drawn = [{str(each.get_gid()) for each in axis.get_children()} for axis in axes]
-    assert {f"force-{joint}" for joint in range(3)} <= drawn[0]
-    assert not any(name.startswith("force") for name in drawn[1])
-    blocks = [
-        [each.get_xy()[:-1] for each in axis.patches if each.get_zorder() == 1] for axis in axes
-    ]
-    np.testing.assert_allclose(blocks[0], built, atol=1e-12)
-    lowered = np.array(blocks[0])[..., 1].max() - np.array(blocks[1])[..., 1].max()
-    assert lowered > 0.2 * problem.assembly.size
 
 
 def test_referee_makes_its_table_of_the_rows_that_are_kept(tmp_path: Path) -> None:

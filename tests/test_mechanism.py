@@ -112,10 +112,3 @@ def test_least_thickness_equals_limit(weight: str) -> None:
         assert (found is None) == (expected is None)
         if found is not None:
             assert abs(found - expected) <= 1e-12
-
-
-def test_symmetric_rates_are_symmetric() -> None:
-    for voussoirs in (26, 27):
-        eta = least_thickness(2.18, 0.9, voussoirs).eta
-        found = mechanism(Arch(half_angle=2.18, eta=eta, voussoirs=voussoirs), 0.9)
-        np.testing.assert_array_equal(found.rates, found.rates[::-1])

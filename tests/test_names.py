@@ -111,17 +111,6 @@ def test_a_ratio_is_of_the_least_as_built_and_depth_is_told() -> None:
     assert stands["verdict"] == "stands"
 
 
-def test_depth_is_in_metres_of_a_check_and_of_a_bracket(tmp_path: Path) -> None:
-    file = tmp_path / "wide.toml"
-    file.write_text(
-        'title = "t"\nsource = "s"\n[arch]\nhalf_angle_deg = 90\nvoussoirs = 9\neta = 0.2\n'
-        "radius = 5.0\ndepth = 2.0\n[contact]\nmu = 0.7\n"
-    )
-    for command in ("check", "bracket"):
-        answer = json.loads(blocksim(command, str(file), "--json").stdout)["arch"]
-        assert (answer["radius"], answer["depth"]) == (5.0, 2.0)
-
-
 # That it overturns is said with its picture, in test_video.
 DRAWN = "semicircle_tilted_overturns"
 

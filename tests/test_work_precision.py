@@ -119,33 +119,6 @@ def test_an_arch_of_n_voussoirs_nears_the_continuous_one_like_one_over_n_squared
     assert [p.error for p in points] == [off_theory(SMALL, n) for n in (7, 27, 101)]
 
 
-@pytest.mark.parametrize("sweeps", [30, 100, 300, 1000, 5000])
-@pytest.mark.parametrize("case", [SMALL, SLIDING], ids=["turning", "sliding"])
-def test_an_onset_test_cut_short_is_open_rather_than_wrong(
-    case: ChartArch, sweeps: int
-) -> None:
-    for ratio, truth in ((0.99, Verdict.COLLAPSES), (1.01, Verdict.STANDS)):
-        seen = look(arch(case, ratio), case.mu, "pymunk", "hold_sweeps", sweeps)
-        assert seen.verdict in {truth, Verdict.UNDECIDED}
-        if sweeps == 5000:
-            assert seen.verdict is truth
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("case", [SMALL, SLIDING])
-def test_brackets_of_an_onset_test_cut_short_are_wider_not_wrong(
-    case: ChartArch, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    fewer(monkeypatch, "hold_sweeps", pymunk=(300, 600, 5000))
-    points = measure([case], ["pymunk"], ["hold_sweeps"])
-    for each in points:
-        assert (each.low or 0) < least(case, case.voussoirs) < (each.high or math.inf)
-    coarse, _, fine = points
-    assert coarse.undecided > 0 == fine.undecided
-    assert coarse.error > 10 * fine.error
-    assert fine.error <= 1e-3
-
-
 @pytest.mark.parametrize("method", ["direct", "pymunk"])
 def test_work_is_contacts_times_sweeps_times_steps(method: str) -> None:
     """What stands is watched to the end."""
@@ -159,18 +132,6 @@ def test_work_is_contacts_times_sweeps_times_steps(method: str) -> None:
     assert seen.work == ENGINES[method].contacts * 10 * 20 * QUIET * 480
     held = look(arch(SMALL, 1.5), SMALL.mu, method, "tolerance", 1e-2)
     assert held.work % (ENGINES[method].contacts * 10) == 0
-
-
-def test_a_moving_run_alone_is_right_when_fine_and_wrong_when_coarse() -> None:
-    """With few sweeps the blocks fall before they bear, and what stands comes down."""
-    for method, value, verdict in (
-        ("pymunk", 1 / 15, Verdict.COLLAPSES),
-        ("pymunk", 1 / 3840, Verdict.STANDS),
-        ("direct", 1 / 15, Verdict.STANDS),
-    ):
-        assert look(arch(SMALL, 1.02), SMALL.mu, method, "step", value).verdict is verdict
-        below = look(arch(SMALL, 0.98), SMALL.mu, method, "step", value)
-        assert below.verdict is Verdict.COLLAPSES
 
 
 @pytest.fixture
