@@ -18,10 +18,12 @@ from typing import Any
 
 import ezdxf
 import numpy as np
+import trimesh
 from hypothesis import strategies as st
 from recorded import header_of, recorded
 
-from blocksim import Arch, CircularArch
+from blocksim import Arch, CircularArch, check, structure_of
+from blocksim.limit.proof import proof_record
 
 
 @dataclass(frozen=True)
@@ -162,6 +164,10 @@ def _box(x: float, y: float, wide: float, high: float) -> list[list[float]]:
     return [[x, y], [x + wide, y], [x + wide, y + high], [x, y + high]]
 
 
+def _cuboid(x: float, z: float, wide: float) -> list[list[float]]:
+    return [[x + a * wide, x + b * wide, z + c] for a in (0, 1) for b in (0, 1) for c in (0, 1)]
+
+
 _TREES: dict[str, Any] = json.loads(Path(__file__).with_suffix(".json").read_text("utf-8"))
 STRUCTURE, BY_KIND, WALL = (_TREES[name] for name in ("STRUCTURE", "BY_KIND", "WALL"))
 GIVEN = {
@@ -179,6 +185,27 @@ SVG = (
     b'width="1" height="1"/><path d="M 1 0 A .5 .5 0 0 1 2 0 L 2 1 H 1 Z"/>'
     b'<use href="#r" x="1.5"/></g><text x="1" y="1">a</text></svg>'
 )
+SOLID = {
+    "friction": 0.6,
+    "density": 20000.0,
+    "blocks": [
+        {"id": "bed", "fixed": True, "vertices": _cuboid(-1, -1, 3)},
+        {"id": 1, "vertices": _cuboid(0, 0, 1), "weight": 100.0},
+        {"id": "b", "polyhedra": [_cuboid(0.2, 1, 1)]},
+    ],
+    "live": [
+        {"body": [1.0, 0.0, 0.0]},
+        {"block": "b", "force": [0, 0, -5.0], "point": [0.5, 0.5, 2]},
+    ],
+    "load": 0.1,
+}
+CASES = {
+    "case": [
+        {"name": "wind", "factors": {"permanent": 1.0, "variable": 1.5, "friction": 1.2},
+         "load": 1.0},
+        {"name": "slope", "tilt": 2.0},
+    ]
+}  # fmt: skip
 CSV = b"time_s,acceleration_g\n0,0\n0.05,0.2\n0.1,-0.1\n0.2,0\n"
 
 
@@ -299,6 +326,77 @@ def _asked(name: str) -> st.SearchStrategy[tuple[str, ...]]:
             ("simulate", name, "--seconds", "0.05", "--out", "o.npz", "--method", "direct")
         ),
     )
+
+
+@cache
+def _meshes() -> dict[str, bytes]:
+    """Two boxes on a bed as meshes, by the name of the file."""
+    scene: Any = trimesh.Scene()
+    for name, (x, z, wide) in {
+        "supports": (-1, -1, 3),
+        "a": (0, 0, 1),
+        "b": (0.2, 1, 1),
+    }.items():
+        scene.add_geometry(
+            trimesh.convex.convex_hull(np.array(_cuboid(x, z, wide))), geom_name=name
+        )
+    made = {kind: scene.export(file_type=kind) for kind in ("obj", "stl", "ply", "glb")}
+    made["text.stl"] = scene.to_geometry().export(file_type="stl_ascii")
+    return {
+        f"a.{kind}": _bytes(text) if isinstance(text, str) else text
+        for kind, text in made.items()
+    }
+
+
+def _converted(name: str) -> tuple[str, ...]:
+    return ("convert", name, "--fixed", "1", "--out", "o.json")
+
+
+@st.composite
+def solids(draw: st.DrawFn) -> Attack:
+    """Structures in space, as files and as meshes."""
+    name, text = draw(
+        st.tuples(st.just("a.json"), changed(SOLID).map(_json))
+        | st.sampled_from(sorted(_meshes().items())).flatmap(
+            lambda each: st.tuples(st.just(each[0]), spoilt(each[1]))
+        )
+    )
+    words = draw(_asked(name)) if name[-3:] not in {"stl", "ply"} else _converted(name)
+    unit = () if name == "a.json" else ("--unit", draw(st.sampled_from(["m", "mm"]) | NUMBERS))
+    return Attack({name: text}, (*words, *unit, *(() if "--mu" in words else ("--mu", "0.7"))))
+
+
+@cache
+def _proof() -> bytes:
+    found = check(structure_of({**GIVEN, "load": 0.1}), method="limit").proof
+    assert found is not None
+    return _json(proof_record(found))
+
+
+@st.composite
+def proofs(draw: st.DrawFn) -> Attack:
+    """Proofs to be checked."""
+    tree = changed(json.loads(_proof())).map(_json)
+    return Attack({"a.json": draw(tree | spoilt(_proof()))}, ("verify", "a.json"))
+
+
+@st.composite
+def cases(draw: st.DrawFn) -> Attack:
+    """Files of cases."""
+    text = toml(draw(changed(CASES)))
+    if draw(st.integers(0, 3)) == 0:
+        text = draw(spoilt(text))
+    files = {"a.json": _json(STRUCTURE), "a.toml": text}
+    return Attack(files, ("check", "a.json", "--cases", "a.toml"))
+
+
+@st.composite
+def streams(draw: st.DrawFn) -> Attack:
+    """Folders of structures and drawings, each with one that is spoilt."""
+    whole = draw(st.sampled_from([_json(GIVEN), _json(SOLID), SVG, _plain_dxf()]))
+    kind = {SVG: "svg", _plain_dxf(): "dxf"}.get(whole, "json")
+    files = {f"1.{kind}": draw(spoilt(whole)), "2.json": _json(STRUCTURE)}
+    return Attack(files, ("check", ".", "--mu", "0.7"))
 
 
 @st.composite
@@ -465,7 +563,8 @@ def kept(draw: st.DrawFn) -> Attack:
 ATTACKS = {
     each.__name__: each
     for each in (
-        structures, scenarios, designs, motions, drawings, tables, options, kept,
+        structures, solids, scenarios, cases, designs, motions, drawings, proofs, streams,
+        tables, options, kept,
     )
 }  # fmt: skip
 
@@ -487,6 +586,14 @@ def good() -> dict[str, Attack]:
     for name, tree in {"design": DESIGN, "drawn design": DRAWN_DESIGN}.items():
         words = ("sweep", "a.toml", "--out", "o", "--workers", "1")
         made[name] = Attack({"a.toml": toml(tree)}, words)
+    made["solid"] = Attack({"a.json": _json(SOLID)}, ("check", "a.json"))
+    made["proof"] = Attack({"a.json": _proof()}, ("verify", "a.json"))
+    files = {"a.json": _json(STRUCTURE), "a.toml": toml(CASES)}
+    made["cases"] = Attack(files, ("check", "a.json", "--cases", "a.toml"))
+    for name, text in _meshes().items():
+        # Where bodies have no names, none is a support.
+        asked = ("check", name) if name[-3:] in {"obj", "glb"} else _converted(name)
+        made[name] = Attack({name: text}, (*asked, *mu, "--unit", "m"))
     for name, text in {"a.svg": SVG, "a.dxf": _dxf(), "plain.dxf": _plain_dxf()}.items():
         made[name] = Attack({name: text}, ("check", name, *mu))
     shaken = ("check", *arch, "--shake", "a.csv")

@@ -141,8 +141,7 @@ if __name__ == "__main__":
     with LocalCluster(
         n_workers=int(sys.argv[1]), threads_per_worker=1, dashboard_address=None
     ) as cluster:
-        workers = [each.process.pid for each in cluster.workers.values()]
-        print(cluster.scheduler_address, *workers, flush=True)
+        print(cluster.scheduler_address, flush=True)
         input()
 """
 PATIENT = {f"DASK_DISTRIBUTED__COMM__TIMEOUTS__{name}": "300s" for name in ("CONNECT", "TCP")}
@@ -150,8 +149,8 @@ PATIENT = {f"DASK_DISTRIBUTED__COMM__TIMEOUTS__{name}": "300s" for name in ("CON
 
 
 @contextmanager
-def cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[int]]]:
-    """A cluster in processes of its own: its address, and its workers."""
+def cluster(folder: Path, workers: int) -> Iterator[tuple[str, int]]:
+    """A cluster in processes of its own: its address, and the process that has its workers."""
     pytest.importorskip("distributed")
     program = folder / "cluster.py"
     program.write_text(CLUSTER)
@@ -159,9 +158,8 @@ def cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[int]]]:
         [sys.executable, str(program), str(workers)], stdin=-1, stdout=-1,
         env={**os.environ, **PATIENT}, text=True,
     ) as process:  # fmt: skip
-        address, *pids = process.stdout.readline().split()
         try:
-            yield address, [int(pid) for pid in pids]
+            yield process.stdout.readline().strip(), process.pid
         finally:
             process.communicate("\n")
 
@@ -182,11 +180,11 @@ def test_a_killed_worker_of_a_dask_cluster_loses_nothing(
     asked = written(tmp_path, SIMULATED.replace("count = 20", "count = 200"))
     out = tmp_path / "out"
     with (
-        cluster(tmp_path, 2) as (address, workers),
+        cluster(tmp_path, 2) as (address, owner),
         started(*asked, "--scheduler", address) as driver,
     ):
         until(lambda: shards(out) > 1, driver)
-        os.kill(workers[0], signal.SIGKILL)
+        os.kill(children(owner)[0], signal.SIGKILL)
         assert driver.wait() == 0
     found = rows_of(out)
     assert len(found) == 400

@@ -6,6 +6,7 @@ The steps are counted and made to fail one by one, as SQLite's tests do
 
 from __future__ import annotations
 
+import ast
 import io
 import math
 import os
@@ -14,19 +15,24 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
 from errno import EACCES, ENOSPC
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 import pytest
-from running import blocksim, inside, small_files
+from running import blocksim as run_it
+from running import inside, small_files
 
-from blocksim import Arch, CircularArch, InputError, MachineError, check, simulate
-from blocksim.common.files import make_folder, require_place, write_whole
+import blocksim
+from blocksim import Arch, CircularArch, InputError, MachineError, Tower, check, simulate, sweep
+from blocksim.cli.proving import write_proof
+from blocksim.common.files import make_folder, require_place, write_folder, write_whole
 from blocksim.common.sheets import write_sheet
-from blocksim.report.poses import write_recording_csv
+from blocksim.report.poses import write_recording_csv, write_recording_json
 from blocksim.report.sheetpage import structure_page
+from blocksim.sweeps import write_csv, write_parquet
 from blocksim.view.drawing import save_figure
 from blocksim.view.models import write_model
 from blocksim.view.sheet import sheet_of
@@ -210,7 +216,7 @@ class Frames:
 
 
 @pytest.fixture(scope="module")
-def writers() -> Writers:
+def writers(tmp_path_factory: pytest.TempPathFactory) -> Writers:
     """What writes a file of each kind, by the ending of its name."""
     run = simulate(CircularArch.of(ARCH, friction=0.7), method="pymunk", duration=0.02)
     problem = CircularArch.of(ARCH, 0.7).problem()
@@ -222,6 +228,13 @@ def writers() -> Writers:
 
     figure = problem.plot()
     rows = [[number, "=1", 0.5] for number in range(2000)]
+    tower = Tower(blocks=1, friction=0.6).problem().tilted(0.7)
+    fall = simulate(tower, method="direct", duration=0.02)
+    proof = check(problem, method="limit").proof
+    swept = tmp_path_factory.mktemp("swept")
+    with ThreadPoolExecutor(1) as executor:
+        asked = {"kind": "column", "width": [0.5, 1.0], "mu": 0.7, "method": "limit"}
+        sweep(asked, swept, executor=executor)
     return {
         "npz": run.save,
         "mp4": lambda path: write_film(Frames(), path),
@@ -232,11 +245,61 @@ def writers() -> Writers:
         "sheet.csv": through(lambda file: write_sheet(file, ["a", "b", "c"], rows)),
         "dxf": through(lambda file: write_dxf(sheet, file)),
         "svg": through(lambda file: save_figure(figure, file, "svg")),
+        "png": through(lambda file: save_figure(figure, file, "png")),
+        "pdf": through(lambda file: save_figure(figure, file, "pdf")),
         "html": through(lambda file: file.write(page.encode())),
+        "poses.json": through(lambda file: write_recording_json(run, file)),
+        "space.npz": fall.save,
+        "space.glb": through(lambda file: write_model(fall, file, "glb")),
+        "proof.json": lambda path: write_proof("limit", [proof], path),
+        "rows.csv": lambda path: write_csv(swept, path),
+        "rows.parquet": lambda path: write_parquet(swept, path),
+        "in a folder": lambda path: write_folder(path.parent, {path.name: page.encode()}),
     }
 
 
-KINDS = ("npz", "mp4", "gif", "glb", "gltf", "csv", "sheet.csv", "dxf", "svg", "html")
+KINDS = (
+    *(
+        "npz",
+        "mp4",
+        "gif",
+        "glb",
+        "gltf",
+        "csv",
+        "sheet.csv",
+        "dxf",
+        "svg",
+        "png",
+        "pdf",
+        "html",
+    ),
+    *("poses.json", "space.npz", "space.glb", "proof.json", "rows.csv", "rows.parquet"),
+    "in a folder",
+)
+OWN = {
+    "common/files.py": "the writer",
+    "engines/bulletspace.py": "a file for its library, in a folder of its own",
+    "report/printing.py": "a page for the browser, likewise",
+}
+"""What writes otherwise, and why it may."""
+
+
+def test_all_that_is_written_is_written_by_one_function() -> None:
+    top, found = Path(blocksim.__file__).parent, set[str]()
+    for path in top.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            match node:
+                case ast.Call(func=ast.Attribute(attr="write_text" | "write_bytes")):
+                    found.add(path.relative_to(top).as_posix())
+                case ast.Call(
+                    func=ast.Attribute(attr="open"), args=[ast.Constant(value=str(mode)), *_]
+                ) if {*mode} & {*"wxa+"}:
+                    found.add(path.relative_to(top).as_posix())
+                case ast.Call(func=ast.Name(id="open")):
+                    found.add(path.relative_to(top).as_posix())
+                case _:
+                    pass
+    assert found == {*OWN}
 
 
 def steps_of(write: Callable[[Path], object], path: Path) -> list[str]:
@@ -285,7 +348,7 @@ def test_every_step_fails_once(kind: str, writers: Writers, tmp_path: Path) -> N
 
 def test_a_full_disk_has_an_exit_code_of_its_own(tmp_path: Path) -> None:
     words = ("simulate", "semicircle", "--eta", "0.2", "--out", "a.npz")
-    done = blocksim(*words, cwd=tmp_path, before=small_files(1000))
+    done = run_it(*words, cwd=tmp_path, before=small_files(1000))
     assert done.returncode == 74
     assert done.stderr == "blocksim: --out = 'a.npz': the system says 'File too large'\n"
     assert not list(tmp_path.iterdir())

@@ -114,7 +114,7 @@ def _put(path: Path, write: Callable[[BinaryIO], object]) -> None:
     # Names have 255 bytes at most; a character may have four.
     aside = path.with_name(f".{path.name[:PREFIX]}.{token_hex(8)}.part")
     try:
-        with aside.open("xb") as file:
+        with aside.open("xb") as file, _broken_off():
             write(file)
             file.flush()
             os.fsync(file.fileno())
@@ -124,6 +124,20 @@ def _put(path: Path, write: Callable[[BinaryIO], object]) -> None:
         with suppress(OSError):
             aside.unlink()
     _sync_folder(path.parent)
+
+
+@contextmanager
+def _broken_off() -> Generator[None]:
+    """Raise what the system said where a library fails at tidying up after it."""
+    try:
+        yield
+    except (OSError, BlocksimError):
+        raise
+    except Exception as error:
+        cause = error.__context__
+        while cause is not None and not isinstance(cause, OSError):
+            cause = cause.__context__
+        raise cause or error from None
 
 
 def _require_plain(path: Path) -> None:
