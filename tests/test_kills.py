@@ -43,7 +43,7 @@ COMMANDS = {
     "map.html": ("map", "--out", "OUT"),
     "map.png": ("map", "--out", "OUT"),
     "read.json": ("convert", "drawn.svg", "--mu", "0.7", "--out", "OUT"),
-    "validate": ("validate", "--quick", "--out", "OUT"),
+    "validate": ("validate", "--quick", "--methods", "direct", "--out", "OUT"),
     "chart": ("chart", "--quick", "--out", "OUT"),
     "paper": ("paper", "OUT", "--figure", "4"),
     "scenes": ("suite", "export", "OUT"),
@@ -55,7 +55,7 @@ COMMANDS = {
 """By the file or folder that they write, or by name."""
 EACH = -(-KILLS // (len(COMMANDS) + 2))
 """Kills of a command, and of a sweep here and by dask."""
-DRAWN = """<svg xmlns="http://www.w3.org/2000/svg" width="1m" height="1m" viewBox="0 0 1 1">
+DRAWN = """<svg xmlns="http://www.w3.org/2000/svg" width="1000mm" height="1000mm" viewBox="0 0 1 1">
 <g id="supports"><rect x="0" y="0.9" width="1" height="0.1"/></g>
 <g id="blocks"><rect x="0.2" y="0.6" width="0.5" height="0.3"/></g></svg>"""
 
