@@ -92,6 +92,7 @@ if TYPE_CHECKING:
     from blocksim.simulation.verdict import Evidence as Evidence
     from blocksim.simulation.verdict import Verdict as Verdict
     from blocksim.sweeps.run import sweep as sweep
+    from blocksim.sweeps.table import to_pandas as to_pandas
 
 _PLACES = {
     "arch.circular": ("Arch",),
@@ -124,6 +125,7 @@ _PLACES = {
     "blocks.space.maker": ("SolidMaker",),
     "limit": ("collapse", "equilibrium"),
     "sweeps.run": ("sweep",),
+    "sweeps.table": ("to_pandas",),
 }
 """Where public names are, besides those of kinds; each is loaded when it is first used."""
 

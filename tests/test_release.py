@@ -18,7 +18,7 @@ from blocksim.view import video
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 NAME = re.compile(r"[\w.-]+")
-USED = ("dask", "dxf", "mesh", "mujoco", "parquet")
+USED = ("dask", "dxf", "mesh", "mujoco", "pandas", "parquet")
 """Extras of those who use blocksim."""
 NAMED = {
     "PIL": "pillow",

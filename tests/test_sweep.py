@@ -15,8 +15,20 @@ import pytest
 from running import inside as blocksim
 from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
 
-from blocksim import Arch, CircularArch, InputError, MissingPart, Problem, bracket, check, sweep
+from blocksim import (
+    Arch,
+    CircularArch,
+    InputError,
+    MissingPart,
+    Problem,
+    bracket,
+    check,
+    check_many,
+    sweep,
+    to_pandas,
+)  # fmt: skip
 from blocksim import sweep as public_sweep
+from blocksim.common import later
 from blocksim.sweeps import Case, answers, read_rows, run, write_csv, write_parquet
 from blocksim.sweeps import table as tables
 from blocksim.sweeps.answers import Answered, Asked, answer
@@ -413,6 +425,27 @@ def test_tables_of_kinds_have_a_column_and_a_type_for_each_parameter(tmp_path: P
             assert held["mu"] == float(str(row["mu"]))
             for same in ("id", "method", "verdict", "tilt_deg", "wall_s", "reason"):
                 assert held[same] == row[same]
+
+
+def test_a_table_of_pandas_is_that_of_the_csv(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as without:
+        without.setattr(later, "find_spec", lambda _: None)
+        with pytest.raises(MissingPart, match=r"pip install 'blocksim\[pandas\]'"):
+            to_pandas(tmp_path)
+    pandas = pytest.importorskip("pandas")
+    with ThreadPoolExecutor(1) as executor:
+        sweep(design_of(tmp_path, KINDS_GRID), tmp_path, executor=executor)
+    write_csv(tmp_path, tmp_path / "rows.csv")
+    table, held = to_pandas(tmp_path), pandas.read_csv(tmp_path / "rows.csv")
+    assert len(table) == 24
+    assert list(table.columns) == list(held.columns)
+    for name in ("id", "mu", "tilt_deg", "pier_width_m", "arch.voussoirs", "verdict"):
+        assert table[name].tolist() == held[name].tolist(), name
+    told = to_pandas(check_many(["{"], workers=1))
+    assert told.verdict.tolist() == [None]
+    assert "error" in told.columns
 
 
 @pytest.mark.usefixtures("in_this_process")

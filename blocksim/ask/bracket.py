@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, Unpack, cast
 
 from blocksim.ask.ends import Change, Stands, Within
-from blocksim.ask.families import Family, families_of, family_of
+from blocksim.ask.families import Family, Over, families_of, family_of
 from blocksim.ask.found import Found, by_family, by_threshold
 from blocksim.ask.methods import chosen_words
 from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
@@ -125,7 +125,7 @@ class Bracket(Shown, Generic[Blocks]):
 def bracket(
     asked: Asked[Blocks] | Family[Blocks],
     *,
-    over: str | None = None,
+    over: Over | str | None = None,
     within: Within | None = None,
     **options: Unpack[Options],
 ) -> Bracket[Blocks]:

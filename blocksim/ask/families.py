@@ -17,12 +17,16 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import AMPLITUDE, DURATION
 from blocksim.common.checks import PUSH
 from blocksim.common.errors import InputError
+from blocksim.common.fields import Stands
 from blocksim.limit.intervals import Interval, over_factor, over_tilt
 
 if TYPE_CHECKING:
     from blocksim.ask.spread import Spreading
 
-Stands = Literal["low", "high"]
+Over = Literal[
+    "load", "tilt", "lean", "mu", "spread", "push", "amplitude", "duration", "thickness"
+]  # fmt: skip
+"""Parameters of any problem, and of arches; a text may name another of its kind as well."""
 LARGEST_FRICTION = 1e3
 """Friction above which more of it is not looked for."""
 WIDEST = 100.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TypedDict
+from typing import Literal, TypedDict
 
 from blocksim.blocks.assembly import Blocks
 from blocksim.blocks.maker import Kind
@@ -13,6 +13,8 @@ from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Method
 from blocksim.simulation.simulated import BY_RULE, Overrides
 
+Named = Literal["auto", "theory", "limit", "direct", "pymunk", "pybullet", "mujoco"]
+"""Methods that come with blocksim; a text may name one of another package as well."""
 Asked = Problem[Blocks] | Kind[Blocks]
 """What is asked about: a problem, or what makes one."""
 
@@ -43,7 +45,7 @@ class Options(TypedDict, total=False):
         by the onset test alone.
     """
 
-    method: str | Method
+    method: Named | str | Method
     settings: Overrides
     reduce: bool | None
     progress: Progress
@@ -55,7 +57,7 @@ class Options(TypedDict, total=False):
 class Taken:
     """Options as given, or as usual."""
 
-    method: str | Method = "auto"
+    method: Named | str | Method = "auto"
     settings: Overrides = field(default_factory=lambda: BY_RULE)
     reduce: bool | None = None
     progress: Progress = silent

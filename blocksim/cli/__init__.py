@@ -42,6 +42,7 @@ def main() -> None:
     code = CRASHED
     with suppress(KeyboardInterrupt), interrupts.Told():
         code = _code()
+    interrupts.done()
     # An interrupt counts whatever became of it on its way: libraries turn it into others.
     if interrupts.code():
         interrupts.say()

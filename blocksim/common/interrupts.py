@@ -56,6 +56,15 @@ def install() -> None:
         signal.signal(number, _handle)
 
 
+def done() -> None:
+    """Take no more signals: nothing is left that they would end, but Python at its end."""
+    if os.getpid() == _State.program:
+        import signal
+
+        for number in CODES:
+            signal.signal(number, signal.SIG_IGN)
+
+
 class Told:
     """Work inside is told by `KeyboardInterrupt` that it has to end, so that it cleans up."""
 

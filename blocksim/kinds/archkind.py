@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -127,8 +127,10 @@ def _foot(name: str, face: Array, side: int) -> Body:
 class CurvedArch(ArchKind):
     """An arch along a curved centreline, as thick everywhere."""
 
-    joints: str = parameter("normal", "direction of the joints", choices=JOINTS)
-    weight: str = parameter(
+    joints: Literal["normal", "radial", "vertical"] = parameter(
+        "normal", "direction of the joints", choices=JOINTS
+    )
+    weight: Literal["curved", "chord", "centreline", "sector"] = parameter(
         "curved",
         "weight and centre of each voussoir: with curved faces, or with straight ones",
         choices=("curved", "chord"),

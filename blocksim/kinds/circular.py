@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
 
 from blocksim.arch.circular import Arch, Weight
-from blocksim.arch.dimensions import LINES, At, Dimensions, Line
+from blocksim.arch.dimensions import LINES, Dimensions, Line
 from blocksim.arch.limit import least_thickness
 from blocksim.blocks.assembly import Assembly
 from blocksim.blocks.made import Built
@@ -99,7 +99,7 @@ class CircularArch(CurvedArch):
     right_deg: float = parameter(
         90.0, "angle from the crown to the right springing", unit="deg", low=-90.0, high=179.0
     )
-    weight: str = parameter(
+    weight: Literal["curved", "chord", "centreline", "sector"] = parameter(
         "curved",
         "weight and centre of each voussoir: with curved faces, with straight ones, or at its "
         "arc of the centreline",
@@ -115,7 +115,9 @@ class CircularArch(CurvedArch):
     )
     span: float | None = _instead("of the line at, in place of radius and springings", LENGTH)
     rise: float | None = _instead("of the line at", LENGTH)
-    at: str = parameter("intrados", "line that span and rise are of", choices=LINES)
+    at: Literal["intrados", "centreline", "extrados"] = parameter(
+        "intrados", "line that span and rise are of", choices=LINES
+    )
 
     @classmethod
     def of(cls, arch: Arch, friction: float | None = None) -> Self:
@@ -273,7 +275,7 @@ class CircularArch(CurvedArch):
         """The line that was measured; None where none was."""
         if self.span is None or self.rise is None:
             return None
-        return Line(span=self.span, rise=self.rise, at=cast("At", self.at))
+        return Line(span=self.span, rise=self.rise, at=self.at)
 
     def mean_radius(self, eta: float) -> float:
         """Return the radius of the centreline at a thickness-to-radius ratio [m].

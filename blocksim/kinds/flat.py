@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -30,7 +30,7 @@ class FlatArch(ArchKind):
     skew_deg: float = parameter(
         30.0, "angle of the springings from the vertical", unit="deg", high=80.0, above=False
     )
-    joints: str = parameter(
+    joints: Literal["fanned", "inclined"] = parameter(
         "fanned",
         "direction of the joints: fanned from one point, or all as inclined as the springings",
         choices=("fanned", "inclined"),

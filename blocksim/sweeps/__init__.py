@@ -7,5 +7,6 @@ from blocksim.sweeps.load import load_design as load_design
 from blocksim.sweeps.run import Summary as Summary
 from blocksim.sweeps.run import sweep as sweep
 from blocksim.sweeps.shards import read_rows as read_rows
+from blocksim.sweeps.table import to_pandas as to_pandas
 from blocksim.sweeps.table import write_csv as write_csv
 from blocksim.sweeps.table import write_parquet as write_parquet

@@ -1,4 +1,4 @@
-"""Rows as one table, Parquet or CSV, a type a column; the only place that knows pyarrow.
+"""Rows as one table, Parquet, CSV or of pandas, a type a column; alone knows these libraries.
 
 Columns are the keys of a row. The unit ends the name of a number that has one: `tilt_deg`,
 `wall_s`, and of kinds of structures `radius_m`, a column for each parameter that any row has.
@@ -8,19 +8,22 @@ Columns are the keys of a row. The unit ends the name of a number that has one: 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict
 from itertools import islice
 from typing import Any, BinaryIO, cast
 
 from blocksim.common.fields import Field, fields_of
 from blocksim.common.files import AnyPath, write_whole
-from blocksim.common.later import require_library
+from blocksim.common.later import Library, require_library
 from blocksim.common.sheets import write_sheet
 from blocksim.kinds import KINDS
 from blocksim.simulation.simulated import SETTINGS
 from blocksim.sweeps.case import COLUMNS
 from blocksim.sweeps.shards import read_rows
 
+_pandas = Library("pandas")
 ROWS_AT_ONCE = 50_000
 """Rows held in memory, a row group of the table."""
 NUMBERS = ("mu", "load_factor", "limit")
@@ -87,6 +90,52 @@ def write_csv(folder: AnyPath, path: AnyPath) -> None:
     InputError, MachineError
         If a file is not of a sweep, or the table cannot be written.
     """
+    names, cells = _cells(folder)
+    write_whole(path, lambda file: write_sheet(file, names, cells))
+
+
+def to_pandas(rows: AnyPath | Iterable[object]) -> Any:
+    """Return rows as a table of pandas.
+
+    Parameters
+    ----------
+    rows : Path, or iterable
+        The folder of a sweep, with the columns of `write_csv`; or rows as mappings or
+        dataclasses, as `check_many` gives.
+
+    Returns
+    -------
+    pandas.DataFrame
+
+    Raises
+    ------
+    InputError
+        If a file is not of a sweep.
+    MissingPart
+        If pandas is not installed.
+
+    Examples
+    --------
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> from tempfile import mkdtemp
+    >>> from blocksim import sweep
+    >>> asked = {"kind": "column", "width": [0.5, 1.0], "mu": 0.7, "method": "limit"}
+    >>> with ThreadPoolExecutor(1) as executor:
+    ...     done = sweep(asked, folder := mkdtemp(), executor=executor)
+    >>> to_pandas(folder).sort_values("width_m").verdict.tolist()
+    ['stands', 'stands']
+    """
+    require_library("pandas", "a table of pandas", "pandas")
+    if isinstance(rows, str | os.PathLike):
+        names, cells = _cells(rows)
+        return _pandas.DataFrame(list(cells), columns=names)
+    return _pandas.DataFrame(
+        [each if isinstance(each, Mapping) else asdict(cast("Any", each)) for each in rows]
+    )
+
+
+def _cells(folder: AnyPath) -> tuple[list[str], Iterator[list[object]]]:
+    """Names of the columns of a sweep, each setting in one of its own, and their rows."""
     settings = [f"settings.{name}" for name in SETTINGS]
     names: list[str] = []
     for name in _columns(folder):
@@ -97,7 +146,7 @@ def write_csv(folder: AnyPath, path: AnyPath) -> None:
         found = _flat(row) | {f"settings.{name}": value for name, value in given.items()}
         return [found.get(name) for name in names]
 
-    write_whole(path, lambda file: write_sheet(file, names, map(cells, read_rows(folder))))
+    return names, map(cells, read_rows(folder))
 
 
 def _columns(folder: AnyPath) -> dict[str, str]:
