@@ -76,12 +76,32 @@ def metres(
     above: bool = False,
     **known: Any,
 ) -> Any:
-    """Make a field that is a length [m]; see `parameter`."""
+    """Make a field that is a length [m]; see `parameter`.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True)
+    ... class Slab(Maker):
+    ...     width: float = metres(1.0, "of the base", high=3.0)
+    >>> Slab(width=2.0).width
+    2.0
+    """
     return parameter(default, about, unit="m", low=low, high=high, above=above, **known)
 
 
 def count(default: int, about: str, *, low: int = 1, high: float = MOST, **known: Any) -> Any:
-    """Make a field that is a number of things; see `parameter`."""
+    """Make a field that is a number of things; see `parameter`.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True)
+    ... class Pile(Maker):
+    ...     stones: int = count(10, "in all", low=2)
+    >>> Pile().stones
+    10
+    """
     return parameter(default, about, whole=True, low=low, high=high, above=False, **known)
 
 

@@ -59,6 +59,13 @@ def assembly_of_polygons(
     ------
     InputError
         As `assembly_of_bodies`.
+
+    Examples
+    --------
+    >>> floor, box = [[-1, -1], [2, -1], [2, 0], [-1, 0]], [[0, 0], [1, 0], [1, 1], [0, 1]]
+    >>> built = assembly_of_polygons([floor, box], fixed={0})
+    >>> len(built.blocks), len(built.joints), float(built.weights[0])
+    (1, 1, 1.0)
     """
     bodies = [
         Body(
