@@ -81,11 +81,12 @@ def metres(
     Examples
     --------
     >>> from dataclasses import dataclass
+    >>> from blocksim.common.fields import fields_of
     >>> @dataclass(frozen=True)
     ... class Slab(Maker):
     ...     width: float = metres(1.0, "of the base", high=3.0)
-    >>> Slab(width=2.0).width
-    2.0
+    >>> fields_of(Slab)["width"].allowed
+    '1e-06 to 3 m'
     """
     return parameter(default, about, unit="m", low=low, high=high, above=above, **known)
 
@@ -96,11 +97,12 @@ def count(default: int, about: str, *, low: int = 1, high: float = MOST, **known
     Examples
     --------
     >>> from dataclasses import dataclass
+    >>> from blocksim.common.fields import fields_of
     >>> @dataclass(frozen=True)
     ... class Pile(Maker):
     ...     stones: int = count(10, "in all", low=2)
-    >>> Pile().stones
-    10
+    >>> fields_of(Pile)["stones"].allowed
+    'a whole number from 2 to 1000'
     """
     return parameter(default, about, whole=True, low=low, high=high, above=False, **known)
 
