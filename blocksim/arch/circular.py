@@ -167,13 +167,7 @@ def require_weight(weight: object) -> None:
 
 
 def checked_arrays(weight: Weight, **given: ArrayLike) -> list[Array]:
-    """Return arrays of one shape, of which each number is above 0 and within `LIMITS`.
-
-    Raises
-    ------
-    InputError
-        If one is not, or the weight is none.
-    """
+    """Return arrays of one shape, of which each number is above 0 and within `LIMITS`."""
     require_weight(weight)
     arrays = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in given.values()))
     for name, values in zip(given, arrays, strict=True):

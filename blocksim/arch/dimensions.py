@@ -42,11 +42,6 @@ class Line:
         Between its ends, and of its top above them [m].
     at : {"intrados", "centreline", "extrados"}
         Which one it is.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
     """
 
     span: float
@@ -90,11 +85,6 @@ class Dimensions:
         [m]
     at : {"intrados", "centreline", "extrados"}
         Which line was measured.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range, or the thickness is beyond eta = 2.
     """
 
     span: float
@@ -132,13 +122,7 @@ class Dimensions:
 
 
 def dimensions_of(arch: Arch, at: At = "intrados") -> Dimensions:
-    """Return the dimensions of an arch at one of its lines.
-
-    Raises
-    ------
-    InputError
-        If that is no line: the intrados of an arch of eta = 2.
-    """
+    """Return the dimensions of an arch at one of its lines."""
     radius = arch.radius + OFFSET[at] * arch.thickness
     require(radius > 0, "eta", arch.eta, "below 2: the intrados is a point")
     return Dimensions(

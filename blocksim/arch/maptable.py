@@ -44,13 +44,7 @@ STEEPEST = 89.0
 
 
 def landmark_points(weight: Weight = "centreline") -> tuple[Landmark, ...]:
-    """Return T, S, J and B, as in Table 1.
-
-    Raises
-    ------
-    InputError
-        If the weight is none of these.
-    """
+    """Return T, S, J and B, as in Table 1."""
     require_weight(weight)
     return tuple(
         replace(each, modes=least_thickness(each.half_angle, each.mu, weight).modes)
@@ -59,13 +53,7 @@ def landmark_points(weight: Weight = "centreline") -> tuple[Landmark, ...]:
 
 
 def special_points(weight: Weight = "centreline") -> tuple[Landmark, ...]:
-    """Return alpha_s-beta, alpha_l and alpha_L, all at unbounded friction.
-
-    Raises
-    ------
-    InputError
-        If the weight is none of these.
-    """
+    """Return alpha_s-beta, alpha_l and alpha_L, all at unbounded friction."""
     angles = special_angles(weight)
     places = (angles.widest_hinge, angles.zero_thrust, angles.limit)
     return tuple(

@@ -104,11 +104,6 @@ def crossing(problem: Problem, vehicle: Vehicle, *, progress: Progress = silent)
     problem : Problem
         In its plane, at rest without live loads; how fill spreads loads is its own.
 
-    Raises
-    ------
-    InputError
-        If the structure falls without the vehicle, or has live loads of its own.
-
     Examples
     --------
     >>> from blocksim.blocks.vehicles import vehicle_of

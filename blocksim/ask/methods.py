@@ -75,17 +75,8 @@ def choose(
         What the question is about, where it is known; an upright arch, if not.
     moving : bool
         Whether it is of motion at all.
-    settings : mapping of str to float
-        Given instead of what the engine's rule says.
     reduce : bool, optional
         Whether no more blocks are to be simulated than it takes; see `reduces`.
-
-    Raises
-    ------
-    InputError
-        If there is no such method, or it cannot answer to that tolerance, or moves
-        nothing or does not see out of the plane where that is asked, or knows no such
-        setting; if there is nothing to reduce.
     """
     auto = method == "auto"
     chosen = _cheapest(tol, problem, moving=moving) if auto else _named(method)

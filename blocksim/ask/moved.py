@@ -19,11 +19,6 @@ def spread_by(problem: Problem, value: float) -> Problem:
 
     A note says what happened on the way, and how much farther they can move. Where blocks fall
     before that it is the problem as it lies where they have gone on falling so far.
-
-    Raises
-    ------
-    InputError
-        If nothing says how supports move, or they cannot be followed so far.
     """
     spreading = Spreading(problem)
     try:

@@ -64,13 +64,7 @@ def asked(problem: Problem, way: str) -> Problem:
 
 
 def borne(problem: Problem) -> dict[str, float]:
-    """Return the push that is borne each way, by name [g]; below 0 where it falls without.
-
-    Raises
-    ------
-    InputError
-        If gravity leans out of the plane, or the ground shakes.
-    """
+    """Return the push that is borne each way, by name [g]; below 0 where it falls without."""
     allowed = "left out where gravity leans or the ground shakes"
     require(problem.has_statics, "push", "given", allowed)
     found = {way: collapse(asked(problem, way)).load_factor for way in WAYS}
@@ -101,11 +95,6 @@ def pushed(problem: Problem, share: float) -> Problem:
         In its plane, on ground at rest.
     share : float
         [g]
-
-    Raises
-    ------
-    InputError
-        If the share is out of range.
     """
     PUSH.require("push", share)
     both = borne(problem)
@@ -121,11 +110,6 @@ def curve(problem: Problem, way: str) -> Curve:
 
     The blocks turn about the hinges with which they begin to fall, however far, and by virtual
     work the push that balances them is known at each place. Other hinges might ask for less.
-
-    Parameters
-    ----------
-    problem : Problem
-        In its plane.
     """
     given = asked(problem, way)
     displaced, found = Displaced(given), collapse(given)

@@ -120,8 +120,6 @@ def let_go(
 
     Parameters
     ----------
-    problem : Problem
-        In its plane.
     way : (blocks, 3) float
         Velocities or accelerations in proportion to those with which they begin.
     until : float

@@ -121,8 +121,6 @@ def root(at: At, low: float, high: float, *, rises: bool) -> float:
 
     Parameters
     ----------
-    at : callable
-        Value to problem.
     rises : bool
         Whether it is the higher one that stands.
     """

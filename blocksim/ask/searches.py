@@ -196,8 +196,6 @@ def proofs_beside(
 
     Parameters
     ----------
-    at : callable
-        Value to problem.
     rises : bool
         Whether it stands above the value.
     """

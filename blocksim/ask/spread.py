@@ -97,13 +97,7 @@ class Slow:
 
 @dataclass(frozen=True, eq=False)
 class Spreading:
-    """A problem whose supports move, by `moves` or else two of them apart, each by half.
-
-    Raises
-    ------
-    InputError
-        If nothing says how they move.
-    """
+    """A problem whose supports move, by `moves` or else two of them apart, each by half."""
 
     asked: Problem
 

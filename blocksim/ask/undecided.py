@@ -70,8 +70,6 @@ def closing_of_verdict(problem: Problem, *, stands: bool) -> tuple[Evidence, ...
 
     Parameters
     ----------
-    problem : Problem
-        In its plane.
     stands : bool
         Whether forces of equilibrium exist, as it is.
     """

@@ -47,7 +47,6 @@ class Move:
 
     Parameters
     ----------
-    support : int
     direction : (2,) float
         Way of the support over the parameter, which is in metres.
     turn : float

@@ -23,8 +23,6 @@ def problem_of_bodies(problem: Problem, owner: Owner) -> Problem:
 
     Parameters
     ----------
-    problem : Problem
-        In its plane.
     owner : (blocks,) int
     """
     assembly = problem.assembly
@@ -49,7 +47,6 @@ def connected(count: int, one: ArrayLike, other: ArrayLike) -> Owner:
 
     Parameters
     ----------
-    count : int
     one, other : (pairs,) int
     """
     pairs = np.asarray(one), np.asarray(other)
@@ -62,7 +59,6 @@ def parting(assembly: Assembly, rates: Array) -> tuple[Array, Array]:
 
     Parameters
     ----------
-    assembly : Assembly
     rates : (blocks, 3) float
 
     Returns

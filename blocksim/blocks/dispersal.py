@@ -57,11 +57,6 @@ class Dispersal:
     def of(cls, words: str, road: float) -> Dispersal:
         """Read `1:2`, the width to one side over the depth, or `boussinesq`.
 
-        Raises
-        ------
-        InputError
-            If it is neither.
-
         Examples
         --------
         >>> Dispersal.of("1:2", road=3.0).slope

@@ -125,10 +125,8 @@ def as_given(
 
     Parameters
     ----------
-    joints : sequence of GivenJoint
     outlines : sequence of sequences of (k, 2) float
         Of each body, counter-clockwise [m].
-    names : sequence of str
     sizes : (bodies,) float
         Half the larger side of each [m].
     share : float
@@ -140,11 +138,6 @@ def as_given(
     -------
     list of (Touch, float or None)
         With its own friction.
-
-    Raises
-    ------
-    InputError
-        If a joint lies off the faces of both bodies, has no length, or a corner no normal.
     """
     found: list[tuple[Touch, float | None]] = []
     off, farthest = list[str](), 0.0

@@ -19,7 +19,6 @@ class Group:
 
     Parameters
     ----------
-    problem : Problem
     blocks, joints : int arrays
         Which of the whole problem's they are.
     """

@@ -61,7 +61,6 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
 
     Parameters
     ----------
-    assembly : Assembly
     poses : (blocks, 3 or 6) float
         Centres of mass x, y and rotations [rad], in units of the assembly's size; motion
         out of the plane is left aside.
@@ -163,7 +162,6 @@ class ObservedJoint:
     ----------
     angle : float
         Direction of the joint from the crown, positive to the right [rad].
-    state : JointState
     """
 
     angle: float
@@ -190,7 +188,6 @@ def classify(
 
     Parameters
     ----------
-    assembly : Assembly
     poses : (blocks, 3 or 6) float
         As for `joint_motion`; best an early instant, while the motion is the collapse
         mechanism and not yet what follows from it.

@@ -30,11 +30,6 @@ def kind_of(
         What leads to the table, for messages: `arch.`.
     forces : mapping of str to float
         Friction and density, which stand beside the parameters.
-
-    Raises
-    ------
-    InputError
-        In one line: no such kind or parameter, or a value out of range.
     """
     named = written.get("kind")
     allowed = f"one of {', '.join(kinds)}"

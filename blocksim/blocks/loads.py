@@ -49,19 +49,12 @@ def name_of(
 
     Parameters
     ----------
-    block : BlockEntry or SolidEntry
     field : str
         Where it stands.
     known : set of str
         Names so far; this one is added.
     parts : sized or None
         What it consists of where it has no `vertices`, under its key.
-    key : str
-
-    Raises
-    ------
-    InputError
-        In one line.
     """
     name = str(block.id)
     require(name not in known, f"{field}.id", block.id, "an id that no other block has")
@@ -80,13 +73,7 @@ def sides_of(
     bodies: Sequence[Body] | Sequence[Solid],
     body_of: Names,
 ) -> tuple[int, int]:
-    """Return the places of the two bodies of a joint, one of which moves.
-
-    Raises
-    ------
-    InputError
-        In one line.
-    """
+    """Return the places of the two bodies of a joint, one of which moves."""
     a, b = body_of(joint.a, f"{field}.a"), body_of(joint.b, f"{field}.b")
     require(a != b, f"{field}.b", joint.b, "another block than a")
     both = bodies[a].fixed and bodies[b].fixed
@@ -99,7 +86,6 @@ class LoadsOf:
 
     Parameters
     ----------
-    bodies : sequence of Body or Solid
     dimensions : int
         Numbers of a force: 2 in the plane, 3 in space.
     """
@@ -112,13 +98,7 @@ class LoadsOf:
         self._count = fixed.count(False)
 
     def __call__(self, load: LoadEntry | SpatialLoadEntry, field: str) -> list[Load]:
-        """Return the loads of one entry.
-
-        Raises
-        ------
-        InputError
-            In one line, if it is none, or on no block that moves.
-        """
+        """Return the loads of one entry."""
         given = [form for form in FORMS if getattr(load, form, None) is not None]
         forms = FORMS if self.dimensions == 2 else FORMS[:2]
         allowed = f"one of {', '.join(forms[:-1])} and {forms[-1]}"
@@ -210,8 +190,6 @@ def acting_of(written: Around | SpatialAround, loads_of: LoadsOf, down: Array) -
 
     Parameters
     ----------
-    written : Around or SpatialAround
-    loads_of : LoadsOf
     down : (3,) float
         Gravity where the file says nothing of it.
     """

@@ -18,9 +18,6 @@ def built_of(made: Made, density: float, size: float | None = None) -> Built[Ass
 
     Parameters
     ----------
-    made : Made
-    density : float
-        Weight per volume [N/m^3].
     size : float, optional
         Characteristic length [m].
     """

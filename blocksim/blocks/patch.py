@@ -133,7 +133,6 @@ class Profile:
         ----------
         x : float
             On the road [m].
-        dispersal : Dispersal
 
         Returns
         -------
@@ -152,7 +151,6 @@ class Profile:
         Parameters
         ----------
         places : (k,) float
-        dispersal : Dispersal
 
         Returns
         -------

@@ -93,7 +93,6 @@ def assembly_of_bodies(
 
     Parameters
     ----------
-    bodies : sequence of Body
     joints : sequence of GivenJoint, optional
         Taken as they are; by default found (see `touching.touches`).
     density : float
@@ -112,12 +111,6 @@ def assembly_of_bodies(
         and `after`, those with supports first, `before` them.
     tuple of str
         What was mended, taken or nearly found.
-
-    Raises
-    ------
-    InputError
-        Naming the blocks: a polygon of two corners or that crosses itself, a weight not
-        above zero, an overlap, a block that nothing holds.
     """
     (raw, size), notes = _sound(bodies, size), list[str]()
     if rounding is None:

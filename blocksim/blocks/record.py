@@ -71,14 +71,8 @@ def from_record(
 
     Parameters
     ----------
-    record : mapping
     maker_of : callable, optional
         Parameters and name of a kind to the maker; by default the problem has none.
-
-    Raises
-    ------
-    KeyError, TypeError, ValueError
-        If it is no such record.
     """
     given = dict(record)
     built = dict(given.pop("assembly"))
@@ -232,7 +226,6 @@ def _require_sound(
 
     Parameters
     ----------
-    assembly : Assembly or SpatialAssembly
     numbers : sequence of float
         What has to be above 0.
     points : sequence of array

@@ -67,7 +67,6 @@ def overlaps(
         Convex ones of each body.
     fixed : (bodies,) bool
         Those may overlap each other.
-    slack : Slack
     most : int
         Stop there: the first is enough to refuse a drawing.
 
@@ -110,11 +109,6 @@ def near_faces(faces: Faces, fixed: NDArray[np.bool_], slack: Slack) -> NDArray[
     -------
     (pairs, 2) int
         Each pair once.
-
-    Raises
-    ------
-    InputError
-        If more faces are near each other than blocks have.
     """
     lines: Any = shapely.linestrings(np.stack([faces.start, faces.end], axis=1))
     tree, pairs = shapely.STRtree(lines), list[NDArray[np.int64]]()

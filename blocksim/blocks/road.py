@@ -38,9 +38,6 @@ def on_road(
 
     Parameters
     ----------
-    assembly : Assembly
-    weight : float
-        [N]
     low, high : float
         Where it stands along x, evenly [m]; at one point where both are equal.
     field : str
@@ -53,11 +50,6 @@ def on_road(
     tuple of Load
         A weight on a joint is shared in halves by the blocks on its two sides. What fill hands
         to supports, or past the blocks, is left out.
-
-    Raises
-    ------
-    InputError
-        If it is not above blocks that move all along.
     """
     profile, count = profile_of(assembly), len(assembly.blocks)
     found = profile.at(low) if low == high else profile.along(low, high)
@@ -129,16 +121,10 @@ def with_road(
 
     Parameters
     ----------
-    problem : Problem
     loads : sequence of (float, float, float)
         From one x to another [m], the same at a point, and the weight [N].
     fields : sequence of str
         What to call each in messages.
-
-    Raises
-    ------
-    InputError
-        If one is not above blocks that move.
     """
     names = fields or ["road"] * len(loads)
     live = [
@@ -176,11 +162,6 @@ def with_fill(problem: Problem, height: float, share: float) -> Problem:
         Of the fill over the highest point of the extrados [m].
     share : float
         Density of the fill over that of the blocks.
-
-    Raises
-    ------
-    InputError
-        If it is of no arch, or a value is out of range.
     """
     maker: Any = problem.maker
     require(takes_fill(problem), "fill", height, "left out: it is for arches and portals")
@@ -212,13 +193,7 @@ def remade(problem: Problem[Blocks], maker: Kind[Any]) -> Problem[Blocks]:
 
 
 def with_soil(problem: Problem, soil: Soil | None) -> Problem:
-    """Return a problem on which soil presses, in place of any other.
-
-    Raises
-    ------
-    InputError
-        If there is no fill.
-    """
+    """Return a problem on which soil presses, in place of any other."""
     fills = _fills(problem)
     others = problem.dead[fill_loads(problem) :]
     made = replace(problem, soil=soil)
@@ -262,11 +237,6 @@ def with_dispersal(problem: Problem, words: str) -> Problem:
         With fill.
     words : str
         As of `Dispersal.of`.
-
-    Raises
-    ------
-    InputError
-        If it is no dispersal, or there is no fill.
     """
     road = road_of(problem)
     if road is None:

@@ -62,11 +62,6 @@ class Shaking:
         Times as shares of the duration, from 0 to 1, and accelerations across and upwards in
         units of the amplitude, with straight lines between; empty for other shapes, which
         are across.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
     """
 
     shape: str
@@ -156,11 +151,6 @@ def table_of(times: Array, accelerations: Array, upwards: Array | None = None) -
         Across [g].
     upwards : (rows,) float, optional
         [g]; by default none.
-
-    Raises
-    ------
-    InputError
-        If they are no such table.
     """
     enough = 2 <= len(times) <= MOST_ROWS
     require(enough, "times_s", f"{len(times)} rows", f"2 to {MOST_ROWS} rows")
@@ -195,13 +185,7 @@ def shaking_of(
     accelerations_g: Sequence[float] | None = None,
     verticals_g: Sequence[float] | None = None,
 ) -> Shaking:
-    """Make what `shake` of a structure file says: a shape, or accelerations over time.
-
-    Raises
-    ------
-    InputError
-        If both or neither are given, or a value is out of range.
-    """
+    """Make what `shake` of a structure file says: a shape, or accelerations over time."""
     pulse = {"shape": shape, "amplitude_g": amplitude_g, "duration_s": duration_s}
     table = {"times_s": times_s, "accelerations_g": accelerations_g}
     given, others = (table, pulse) if times_s is not None else (pulse, table)
@@ -252,11 +236,6 @@ def read_table(path: AnyPath) -> Shaking:
     ----------
     path : Path or str
         With a first line `time_s,acceleration_g`, or `time_s,acceleration_g,vertical_g`.
-
-    Raises
-    ------
-    InputError
-        In one line, if it is no such file.
     """
     read = read_file(path, "shake", "an existing .csv file", LARGEST_FILE)
     where = os.fspath(path)

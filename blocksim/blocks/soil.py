@@ -55,11 +55,6 @@ class Soil:
         From the side over the weight above, left and right; 0 for none.
     passive : (float, float)
         The most that soil bears from the side, over the same; 0 where that is not counted on.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
     """
 
     unit_weight: float
@@ -111,7 +106,6 @@ class Soil:
 
         Parameters
         ----------
-        profile : Profile
         depths : (blocks,) float
             Of those that move, which come first [m].
         road : float
@@ -238,11 +232,6 @@ def coefficients(words: str, angle: float | None) -> Sides:
         Of the left and of the right, divided by a comma; one for both.
     angle : float or None
         Of friction of the soil [rad].
-
-    Raises
-    ------
-    InputError
-        If it is none, or the angle is missing.
 
     Examples
     --------

@@ -120,17 +120,10 @@ def problem_of(
 
     Parameters
     ----------
-    written : Around
     bodies : sequence of Body
         Of which the assembly was made, each with a name of its own.
-    assembly : Assembly
     found : sequence of str
         Notes on how it was made.
-
-    Raises
-    ------
-    InputError
-        In one line: a load on no block.
     """
     acts = acting_of(written, LoadsOf(bodies), np.array(Assembly.down))
     mu = written.friction

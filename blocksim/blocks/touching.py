@@ -118,14 +118,11 @@ def touches(
 
     Parameters
     ----------
-    faces : Faces
     pairs : (pairs, 2) int
         Faces of different bodies, each pair once.
-    slack : Slack
 
     Returns
     -------
-    list of Touch
     list of (int, int)
         Bodies that nearly touch.
     """

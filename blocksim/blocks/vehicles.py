@@ -26,7 +26,6 @@ class Vehicle:
     ----------
     axles : tuple of (float, float)
         Place of each along the road, from an origin of the vehicle [m], and weight [N].
-    title, source : str
     """
 
     axles: tuple[tuple[float, float], ...]
@@ -85,11 +84,6 @@ def vehicle_of(said: str) -> Vehicle:
     said : str
         A shipped name; a .toml file with `axles`, a list of places [m] and weights [kN], and a
         `title` and `source` if wanted; or weights and places, as "10@0,10@1.2".
-
-    Raises
-    ------
-    InputError
-        In one line, if it is none of them.
 
     Examples
     --------

@@ -151,13 +151,7 @@ class Given:
 
     @property
     def friction(self) -> float | None:
-        """Friction coefficient, given as such or as an angle.
-
-        Raises
-        ------
-        InputError
-            If both are given, or one is out of range or looks like the other.
-        """
+        """Friction coefficient, given as such or as an angle."""
         mu, angle = self.mu, self.friction_angle
         if angle is None:
             slip = mu is not None and LARGEST_FRICTION < mu < 90

@@ -59,11 +59,6 @@ def asked_of_cases(
     scene, given, loading, spatial
         The structure, and what acts on it in every case that says nothing else; as of
         `anything_asked`.
-
-    Raises
-    ------
-    InputError
-        In one line, with the case that it is about.
     """
     allowed = "left out with many structures: cases are of one"
     require(scene is None or not is_many(scene), "--cases", str(path), allowed)

@@ -31,13 +31,7 @@ GIVEN = {"mu", "friction_angle"}
 def check_each(
     scene: str, given: Given, loading: Loading, others: Mapping[str, object]
 ) -> NoReturn:
-    """Answer the command check with a line of JSON for each structure, in their order.
-
-    Raises
-    ------
-    InputError
-        If an option is for one structure alone, or the folder has none.
-    """
+    """Answer the command check with a line of JSON for each structure, in their order."""
     for name, value in {**asdict(given), **asdict(loading), **others}.items():
         unset = value is None or value is False or value == [] or name in GIVEN
         allowed = "left out with many structures: these are read as they are"

@@ -35,13 +35,7 @@ def verify(
 
 
 def write_proof(method: str, proofs: Sequence[Proof], path: Path | None) -> None:
-    """Write the proofs of an answer, where they are asked for.
-
-    Raises
-    ------
-    InputError
-        If there are none, or they cannot be written.
-    """
+    """Write the proofs of an answer, where they are asked for."""
     if path is None:
         return
     from blocksim.limit.proof import proof_record

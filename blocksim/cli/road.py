@@ -34,13 +34,7 @@ IN_SPACE = {"parameters", "mu", "friction_angle", "unit_weight", "tolerance", "u
 
 
 def loaded(problem: Problem[Any], given: Given, loading: Loading) -> Problem[Any]:
-    """Put on a problem what the options say: friction, load, tilt, lean.
-
-    Raises
-    ------
-    InputError
-        If an option is out of range, or means nothing in space.
-    """
+    """Put on a problem what the options say: friction, load, tilt, lean."""
     if problem.in_space:
         refuse({**asdict(given), **asdict(loading)}, IN_SPACE | given.sizes.keys())
         problem = replace(problem, azimuth=math.radians(loading.azimuth or 0.0))
@@ -148,13 +142,7 @@ def _said(value: object) -> str:
 
 
 def under_road(problem: Problem, loading: Loading) -> Problem:
-    """Put fill and loads on a structure; live loads act as they are, with a factor of 1.
-
-    Raises
-    ------
-    InputError
-        If an option is out of range, a load is above no block, or weights are ratios only.
-    """
+    """Put fill and loads on a structure; live loads act as they are, with a factor of 1."""
     blocks = problem.assembly.blocks
     volume = sum(abs(signed_area(part)) * b.depth for b in blocks for part in b.polygons)
     density = sum(block.mass for block in blocks) * STANDARD_GRAVITY / volume

@@ -49,13 +49,7 @@ def is_structure(scene: str | None) -> bool:
 
 
 def structure(scene: str, given: Given, loading: Loading) -> Problem[Any]:
-    """Read or make a structure and put on it what the options say.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be used, or what is built has no such parameter.
-    """
+    """Read or make a structure and put on it what the options say."""
     changes, sizes = parameters_of(given.parameters), given.sizes
     for name, value in sizes.items():
         require(name not in changes, option_of(name), value, f"left out where --with {name} is")

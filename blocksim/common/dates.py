@@ -21,11 +21,6 @@ def made_at() -> str:
     """Return the present time, or that of SOURCE_DATE_EPOCH, so that pages can be made again.
 
     As https://reproducible-builds.org/specs/source-date-epoch has it.
-
-    Raises
-    ------
-    InputError
-        If SOURCE_DATE_EPOCH is no number of seconds since 1970.
     """
     given = os.environ.get(VARIABLE)
     if given is None:

@@ -102,11 +102,6 @@ def loaded(what: str, place: str) -> Any:
         What is looked for, as errors name it.
     place : str
         ``module:NAME``.
-
-    Raises
-    ------
-    InputError
-        If the module cannot be imported, or has no such name.
     """
     module, _, name = place.partition(":")
     try:

@@ -55,11 +55,6 @@ def as_said(
         The file.
     renamed : mapping of str to str
         Keys that were called otherwise, and their names now.
-
-    Raises
-    ------
-    InputError
-        In one line: the first entry that is wrong, its value, and what is allowed.
     """
     try:
         return _adapter(schema).validate_python(table)

@@ -63,11 +63,6 @@ def engine_named(name: str, field: str = "method") -> Engine:
         directory, too.
     field : str
         What errors call it.
-
-    Raises
-    ------
-    InputError
-        If there is none, or it cannot be loaded.
     """
     if name in ENGINES:
         return ENGINES[name]
@@ -81,14 +76,8 @@ def make_known(engine: object, place: str) -> Engine:
 
     Parameters
     ----------
-    engine : Engine
     place : str
         Where it was found, as errors name it.
-
-    Raises
-    ------
-    InputError
-        If it is no `Engine`, or has the name of another that comes with blocksim.
     """
     if not isinstance(engine, Engine):
         raise InputError("method", place, "an Engine of blocksim.engines.base")
@@ -100,15 +89,7 @@ def make_known(engine: object, place: str) -> Engine:
 
 
 def get_engine(asked: str | Method) -> Engine:
-    """Return an engine that can run here: itself, or by its name or place.
-
-    Raises
-    ------
-    InputError
-        If there is none, or it cannot be loaded; see `engine_named`.
-    MissingPart
-        If its library is not installed.
-    """
+    """Return an engine that can run here: itself, or by its name or place."""
     engine = engine_named(asked) if isinstance(asked, str) else asked
     assert isinstance(engine, Engine)  # noqa: S101 - a method that moves blocks was chosen
     if engine.missing:

@@ -133,7 +133,6 @@ def plate(side: Side, depth: float, origin: Array, overlap: float, turn: float =
 
     Parameters
     ----------
-    side : Side
     depth : float
         How deep it is.
     origin : (2,) float

@@ -65,7 +65,6 @@ class Planar(Polygons):
 
     Parameters
     ----------
-    problem : Problem
     frame : Frame
         Where in Bullet's frame the assembly lies.
     """
@@ -112,7 +111,6 @@ class Planar(Polygons):
 
         Parameters
         ----------
-        space : Space
         reaches : (joints, 2) float, optional
             How far the sides of each joint reach into each other at its ends [size].
         """

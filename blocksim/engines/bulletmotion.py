@@ -59,7 +59,6 @@ class Moving:
     ----------
     parts : Planar or Spatial
         The blocks, as this engine needs them.
-    settings : Settings
     """
 
     def __init__(self, parts: Planar | Spatial, settings: Settings) -> None:

@@ -39,7 +39,6 @@ def linked(
 
     Parameters
     ----------
-    space : Space
     links : mapping of int to sequence of Link
         By block, or `SUPPORT`.
     built : sequence of State

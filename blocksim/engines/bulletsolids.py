@@ -99,7 +99,6 @@ class Spatial(Polyhedra):
 
         Parameters
         ----------
-        space : Space
         reaches : (points,) float, optional
             How far each point reaches into its plate [size].
         """

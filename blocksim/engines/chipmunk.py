@@ -196,7 +196,6 @@ class Space:
 
         Yields
         ------
-        joint : int
         place : (2,) float
         axes : (2, 2) float
             Normal and tangent of its impulses, as they act on the block after the joint.

@@ -25,7 +25,6 @@ def energy(problem: Problem, poses: Array, velocities: Array) -> float:
 
     Parameters
     ----------
-    problem : Problem
     poses, velocities : (blocks, 3 or 6) float
         Of a world; its columns.
     """

@@ -31,7 +31,6 @@ class Side:
 
     Parameters
     ----------
-    joint : int
     body : int
         Index of its block, or `SUPPORT`.
     ends : (2, 2) float

@@ -28,7 +28,6 @@ class OnMovingSupports(Blocks):
     ----------
     problem : Problem
         With `moves`.
-    settings : Settings
     speed : float
         Of the parameter of the supports' motion [size/sqrt(size/g)].
     deep : float

@@ -30,13 +30,7 @@ RUBBLE_SOFTNESS, RUBBLE_RATIO = 1e-3, 10.0
 
 
 def spec_of(gravity: Array, masses: Array) -> Any:
-    """Return a model without bodies, and how it is solved.
-
-    Raises
-    ------
-    InputError
-        If a mass or an inertia is less than MuJoCo takes.
-    """
+    """Return a model without bodies, and how it is solved."""
     least, lightest = library.mjMINVAL, float(masses.min())
     allowed = f"above {least:g} of the mean block's: MuJoCo takes no less"
     require(lightest > least, "lightest block", f"mass or inertia of {lightest:.3g}", allowed)

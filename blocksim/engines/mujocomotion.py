@@ -85,7 +85,6 @@ class Moving:
     ----------
     parts : Planar or Spatial
         The blocks, as this engine needs them; coordinates are MuJoCo's.
-    settings : Settings
     """
 
     def __init__(self, parts: Planar | Spatial, settings: Settings) -> None:

@@ -41,7 +41,6 @@ class Touch(NamedTuple):
 
     Parameters
     ----------
-    joint : int
     plate, corners : int
         Blocks with the plate and with the corners, or `SUPPORT`.
     sign : float

@@ -98,8 +98,6 @@ class Bodies(Moving):
 
     Parameters
     ----------
-    problem : Problem
-    settings : Settings
     frame : Frame, optional
         Where in Bullet's frame the assembly lies, turned about the vertical. It should not
         matter, and this is how to see whether it does.

@@ -72,7 +72,6 @@ class Stepping(Placed):
 
     Parameters
     ----------
-    problem : Problem
     accuracy : float
         Share by which motion may be off.
     restitution : float

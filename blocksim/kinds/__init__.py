@@ -53,13 +53,7 @@ Packages offer theirs under the entry point group `blocksim.kinds`.
 
 
 def own_kind(place: str) -> type[Kind[Any]]:
-    """Return a kind of one's own by its place, ``module:CLASS``.
-
-    Raises
-    ------
-    InputError
-        If it cannot be loaded, or is no `Maker` or `SolidMaker`.
-    """
+    """Return a kind of one's own by its place, ``module:CLASS``."""
     from blocksim.blocks.maker import Kind
 
     found = loaded_here("kind", place)

@@ -44,13 +44,7 @@ def edited(
 
 
 def changed(table: Mapping[str, Any], changes: Mapping[str, object]) -> dict[str, Any]:
-    """Return the table of a kind with other parameters.
-
-    Raises
-    ------
-    InputError
-        If it is of no kind.
-    """
+    """Return the table of a kind with other parameters."""
     table = {**table}
     for name, value in changes.items():
         there = table.get("kind") is not None
@@ -77,11 +71,6 @@ def deepened(table: dict[str, Any], depth: float, *own: type[Kind[Any]]) -> dict
     ----------
     *own : type
         Kinds of one's own.
-
-    Raises
-    ------
-    InputError
-        If a block has a depth of its own, or a kind none that could be another.
     """
     if "kind" in table:
         kinds = {each.name: each for each in (*KINDS.values(), *own)}

@@ -126,11 +126,6 @@ def named_file(
         Unit and layers of a drawing.
     drawing : Drawing, optional
         What `drawing_of` read of it, where that was asked for before.
-
-    Raises
-    ------
-    InputError
-        In one line, also what is raised while it is used.
     """
     # As it was given: a name that ends in a slash is no file.
     path, near = os.fspath(path), ""
@@ -168,13 +163,7 @@ def named_file(
 
 
 def drawing_of(path: AnyPath, reading: Reading = AS_DRAWN) -> Drawing:
-    """Read a drawing: its shapes, and what of it is refused.
-
-    Raises
-    ------
-    InputError
-        In one line, with the file's name, if it is no drawing.
-    """
+    """Read a drawing: its shapes, and what of it is refused."""
     try:
         return DRAWN[Path(path).suffix.lower()](path, reading)
     except InputError as error:
@@ -190,13 +179,7 @@ def require_undrawn(reading: Reading) -> None:
 
 
 def written(text: bytes, language: str) -> object:
-    """Return what a text says, a scene or an assembly of compas as a structure file would.
-
-    Raises
-    ------
-    InputError, ValueError, RecursionError
-        If it is not of that language, JSON or TOML, or says what cannot be.
-    """
+    """Return what a text says, a scene or an assembly of compas as a structure file would."""
     if language == "TOML":
         return toml_of(text)
     data: object = json_of(text, _once)
@@ -275,13 +258,7 @@ def structure_of(data: object, *own: type[Kind[Any]]) -> Problem[Any]:
 def around_said(
     table: Mapping[str, Any], kinds: Mapping[str, type[Kind[Any]]] = KINDS
 ) -> Around | SpatialAround:
-    """Return what a structure file says besides its blocks, of the plane or in space.
-
-    Raises
-    ------
-    InputError
-        In one line: the first entry that is wrong, or that means nothing in space.
-    """
+    """Return what a structure file says besides its blocks, of the plane or in space."""
     from blocksim.blocks.space.files import AROUND as OF_SPACE
     from blocksim.blocks.space.files import SpatialAround, is_spatial
 

@@ -90,13 +90,7 @@ class Known:
 
 
 def load_known(name: str) -> Known:
-    """Read a shipped structure with what is expected of it.
-
-    Raises
-    ------
-    InputError
-        In one line: file, entry, value, and what would be accepted.
-    """
+    """Read a shipped structure with what is expected of it."""
     with named_file(name) as data:
         problem = structure_of(data)
         table = cast("dict[str, Any]", data)
@@ -135,11 +129,6 @@ def maker_of(origin: Mapping[str, object]) -> Kind[Any] | None:
     ----------
     origin : mapping
         What `Kind.origin` returned.
-
-    Raises
-    ------
-    InputError, TypeError
-        If it is of a symmetric arch, and cannot be.
     """
     table: dict[str, Any] = dict(origin)
     if table.get("kind") == CircularArch.name and "half_angle" in table:

@@ -62,13 +62,7 @@ class Scenario:
 
     @cached_property
     def maker(self) -> CircularArch:
-        """What makes the arch, at `ASIDE` of its least thickness where none is given.
-
-        Raises
-        ------
-        InputError
-            If a value is out of range, or there is no least thickness.
-        """
+        """What makes the arch, at `ASIDE` of its least thickness where none is given."""
         return CircularArch(**self.given) if self.has_thickness else self.of(ratio=ASIDE)
 
     def of(self, **thickness: Any) -> CircularArch:

@@ -173,13 +173,7 @@ def shipped() -> dict[str, Path]:
 
 
 def load_scenario(name: AnyPath) -> Scenario:
-    """Read a scenario by its path, or by the name of a shipped one.
-
-    Raises
-    ------
-    InputError
-        In one line, with file, field, value and what is allowed.
-    """
+    """Read a scenario by its path, or by the name of a shipped one."""
     path = Path(name)
     known = shipped()
     if path.suffix != ".toml" and str(name) in known:
@@ -200,11 +194,6 @@ def written_in(
     ----------
     what, allowed : str
         What the file is and has to be, for what is said of one that is not.
-
-    Raises
-    ------
-    InputError
-        If there is none, or it is no TOML.
     """
     text = read_file(path, what, allowed, largest)
     try:

@@ -31,7 +31,6 @@ class Bearing:
 
     Parameters
     ----------
-    problem : Problem
     cones : Cones
         Of the problem.
     """
@@ -102,8 +101,6 @@ def settled(problem: Problem, live: Array | None = None) -> Problem:
 
     Parameters
     ----------
-    problem : Problem
-        In its plane.
     live : (blocks, 3) float, optional
         Loads of which the factor is made largest; by default it is the margin of all contacts
         under what acts.

@@ -44,7 +44,6 @@ def widened(problem: Problem, cones: Cones, rates: Array) -> Array | None:
 
     Parameters
     ----------
-    problem : Problem
     cones : Cones
         Of the same problem.
     rates : (blocks, 3) float

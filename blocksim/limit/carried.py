@@ -34,7 +34,6 @@ class Carried:
 
     Parameters
     ----------
-    problem : Problem
     geometrical_factor : float or None
         Thickness over the least that stands, of a circular arch under its own weight. Of
         anything else the number of times that all joints are wider than they need be, about
@@ -130,8 +129,6 @@ def carried_by(
 
     Parameters
     ----------
-    problem : Problem
-        In its plane.
     joint : int, optional
         Where thrust is asked for; by default at the crown (`blocksim.limit.margins.crown`).
     needed : Needed, optional

@@ -29,11 +29,6 @@ RUBS = 1e-13
 def margin_of_stack(problem: Problem) -> float | None:
     """Return the margin of `equilibrium`, of a stack.
 
-    Parameters
-    ----------
-    problem : Problem
-        In its plane.
-
     Returns
     -------
     float or None

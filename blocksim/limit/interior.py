@@ -26,7 +26,6 @@ def most_inside(cones: Cones, column: Any, right: Array, highest: float) -> Opti
 
     Parameters
     ----------
-    cones : Cones
     column : (equations, 1) sparse
     right : (equations,) float
         What parts and column balance together.

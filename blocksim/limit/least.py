@@ -46,11 +46,6 @@ class LeastMotion:
 def least_motion(problem: Problem) -> LeastMotion | None:
     """Find the contact forces that leave blocks at rest the least acceleration.
 
-    Parameters
-    ----------
-    problem : Problem
-        In its plane.
-
     Returns
     -------
     LeastMotion or None

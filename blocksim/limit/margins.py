@@ -84,12 +84,6 @@ class Thrust:
 def thrust_range(problem: Problem, joint: int) -> tuple[Thrust, Thrust] | None:
     """Find the least and the greatest thrust of a joint, two linear programmes.
 
-    Parameters
-    ----------
-    problem : Problem
-        In its plane.
-    joint : int
-
     Returns
     -------
     least, greatest : Thrust
@@ -142,13 +136,7 @@ def crown(problem: Problem) -> int | None:
 
 
 def margins(problem: Problem) -> Margins:
-    """Find the least that joints need of their width, of their friction, and of both.
-
-    Parameters
-    ----------
-    problem : Problem
-        In its plane.
-    """
+    """Find the least that joints need of their width, of their friction, and of both."""
     solver = LinearProgramme()
     width = _least_share(_Search(problem, solver, friction=False), 0.0)
     stands = width is not None and width <= 1
@@ -170,11 +158,6 @@ def margins(problem: Problem) -> Margins:
 
 def nearest_mechanism(problem: Problem) -> Array | None:
     """Find how blocks fall, or how they would with hardly less strength than they need.
-
-    Parameters
-    ----------
-    problem : Problem
-        In its plane.
 
     Returns
     -------

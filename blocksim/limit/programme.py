@@ -51,7 +51,6 @@ class Equilibrium:
 
     Parameters
     ----------
-    problem : Problem
     margin : float
         The least part along any edge of a cone of friction, made as large as it can be
         (at most `SPARE`), over what its joint carries (`Cones.unit`). Below 0 there is no

@@ -104,8 +104,6 @@ def proof_of_rest(exact: Exact, forces: Array) -> Proof | None:
 
     Parameters
     ----------
-    exact : Exact
-        The problem, in its plane.
     forces : (joints, 2, 2) float
         As of `Equilibrium`, which hardly balance.
 
@@ -144,8 +142,6 @@ def proof_of_fall(exact: Exact, rates: Array) -> Proof | None:
 
     Parameters
     ----------
-    exact : Exact
-        The problem, in its plane.
     rates : (blocks, 3) float
         As of `Equilibrium`, of a mechanism that opens joints by more than round-off.
 
@@ -164,8 +160,6 @@ def proof_in_rationals(exact: Exact, weights: Array, owner: Sequence[int]) -> Pr
 
     Parameters
     ----------
-    exact : Exact
-        The problem, in its plane.
     weights : (blocks,) float
         What each block carries [mean weights].
     owner : (blocks,) sequence of int

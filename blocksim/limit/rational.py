@@ -39,7 +39,6 @@ class Bodies:
 
     Parameters
     ----------
-    exact : Exact
     owner : (blocks,) sequence of int
         Body of each block; `SUPPORT` where it stays at rest.
     """

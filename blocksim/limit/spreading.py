@@ -76,7 +76,6 @@ class Path:
     ----------
     frames : tuple of Frame
         From where they were built to the last position of rest.
-    events : tuple of Event
     ends : str
         `collapse`, `range` (the supports moved as far as asked), or `slides`, `parts`: what
         joints would do at rest, which is not followed.

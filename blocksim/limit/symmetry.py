@@ -30,7 +30,6 @@ class Mirror:
 
     Parameters
     ----------
-    assembly : Assembly
     blocks : (blocks,) int
     joints : (joints,) int
     swaps : (joints,) bool
@@ -76,8 +75,6 @@ def mirror_of(problem: Problem, *others: Array) -> Mirror | None:
 
     Parameters
     ----------
-    problem : Problem
-        In its plane.
     *others : (blocks, 3) float
         Further forces and moments on the blocks, which have to be symmetric as well.
 

@@ -40,11 +40,6 @@ class Reading:
     snap : float, optional
         Ends of lines that are so near to each other are one corner [m]; by default a
         ten-thousandth of the shorter line.
-
-    Raises
-    ------
-    InputError
-        If the unit is out of range, a role is unknown, or a layer is named for two.
     """
 
     unit: float | str | None = None

@@ -67,11 +67,6 @@ def read_compas(data: Table) -> dict[str, Any]:
     -------
     dict
         As of a structure file, without friction. Blocks have the names of their nodes.
-
-    Raises
-    ------
-    InputError
-        In one line, if it is no assembly, or a block is open, flat or not convex.
     """
     try:
         meshes = [_mesh(*each) for each in islice(_nodes(data), MOST_BLOCKS + 1)]

@@ -127,13 +127,7 @@ class Drawing:
     moved: float = 0.0
 
     def structure(self) -> dict[str, Any]:
-        """Return it as the dict of a structure file; it has no friction.
-
-        Raises
-        ------
-        InputError
-            In one line: what cannot be read, no unit, or no outline on a layer that is read.
-        """
+        """Return it as the dict of a structure file; it has no friction."""
         for each in self.refused[:1]:
             more = len(self.refused) - 1
             others = f"; {more} more of it cannot be read" if more else ""
@@ -177,13 +171,7 @@ class Drawing:
 def drawing_of(
     shapes: Iterable[Shape], path: Path, unit: Unit | None, reading: Reading
 ) -> Drawing:
-    """Sort what was drawn by its layers, and put lines together to outlines.
-
-    Raises
-    ------
-    InputError
-        In one line: too much was drawn, or a layer that was named is not there.
-    """
+    """Sort what was drawn by its layers, and put lines together to outlines."""
     roles = reading.roles
     lines: dict[bool, list[Shape]] = {False: [], True: []}
     blocks: list[tuple[Shape, bool]] = []

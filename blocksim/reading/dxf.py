@@ -48,13 +48,6 @@ def read_dxf(path: AnyPath, reading: Reading) -> Drawing:
     -------
     Drawing
         Blocks are named by their handles.
-
-    Raises
-    ------
-    InputError
-        In one line, if the file is too large, no DXF, or a layer that is named is not there.
-    MissingPart
-        If ezdxf is not installed.
     """
     require_file(path, "drawing", "an existing .dxf file", LARGEST_DRAWING)
     require_library("ezdxf", "DXF", "dxf")

@@ -71,7 +71,6 @@ def loops_of(
 
     Returns
     -------
-    list of Loop
     list of Open
         Lines that make none: all of those with an end that meets no other, or of a group of
         lines of which it cannot be told where its blocks are.

@@ -51,14 +51,6 @@ def read_mesh(path: AnyPath, reading: Reading) -> dict[str, Any]:
     -------
     dict
         As of a structure file in space, without friction.
-
-    Raises
-    ------
-    InputError
-        In one line: no mesh, too large, without a unit, or a body that is open, flat or not
-        convex.
-    MissingPart
-        If trimesh is not installed.
     """
     ending = Path(path).suffix.lower()[1:]
     content = read_file(path, "mesh", f"an existing .{ending} file", LARGEST_MESH)
@@ -89,11 +81,6 @@ def convex_block(name: str, points: Array, facets: Facets, *, fixed: bool) -> di
     """Return a closed body as an entry of `blocks`: the hull of its corners.
 
     Facets may be turned inwards: what is closed and lies on the hull everywhere is the hull.
-
-    Raises
-    ------
-    InputError
-        In one line, if it is open, flat, or not convex.
     """
     field, used = f"block {name}", np.unique(facets)
     allowed = f"at most {MOST_CORNERS} corners within {COORDINATE.high:g} m"

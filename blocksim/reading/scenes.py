@@ -20,13 +20,7 @@ def is_scene(data: object) -> bool:
 
 
 def read_scene(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a scene that asks whether blocks stand as a structure file.
-
-    Raises
-    ------
-    InputError
-        If it asks for motion, or a body, mass or acceleration is none.
-    """
+    """Return a scene that asks whether blocks stand as a structure file."""
     asked = data.get("question")
     require(asked == "stands", "question", asked, "stands: of motion engines are asked")
     bodies, gravity, pushes = (_list(data, key) for key in ("bodies", "gravity", "pushes"))

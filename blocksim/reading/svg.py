@@ -71,11 +71,6 @@ def read_svg(path: AnyPath, reading: Reading) -> Drawing:
     -------
     Drawing
         Blocks are named by their ids.
-
-    Raises
-    ------
-    InputError
-        In one line, if the file is too large, no SVG, or declares entities.
     """
     text = read_file(path, "drawing", "an existing .svg file", LARGEST_DRAWING)
     elements = _Elements()

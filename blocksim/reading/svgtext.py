@@ -40,13 +40,7 @@ class Line:
 
 
 def lines_of(text: str) -> list[Line]:
-    """Return the lines of the `d` of a path, curves as chords.
-
-    Raises
-    ------
-    InputError
-        In one line, if it is none.
-    """
+    """Return the lines of the `d` of a path, curves as chords."""
     lines: list[Line] = []
     here, last, before = 0j, 0j, ""
     at, command, text = 0, "", text.strip()

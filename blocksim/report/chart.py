@@ -67,11 +67,6 @@ def read_points(path: AnyPath) -> list[Point]:
 
     Files of before there were knobs are read, too: a tolerance `tol`, and `seconds` by the
     clock, which are taken for the processor's. The ends of brackets need not be told.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, too large, or holds no points.
     """
     text = read_file(path, "points", WRITTEN, LARGEST_FILE)
     try:

@@ -39,11 +39,6 @@ def write_paper(
         The page first.
     worst : float
         Largest relative difference of a number from the printed one.
-
-    Raises
-    ------
-    InputError, MachineError
-        If there is no such figure, or the folder cannot be written.
     """
     folder = Path(folder)
     make_folder(folder)

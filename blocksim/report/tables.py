@@ -83,11 +83,6 @@ def write_results(
         What was not asked, and why; said in the page and in the JSON.
     structures : sequence of StructureRow
         Of the second part; where there are some, structures.csv is written, too.
-
-    Raises
-    ------
-    InputError, MachineError
-        If they cannot be written.
     """
     records = [as_record(row) for row in rows]
     built = [structure_record(row) for row in structures]

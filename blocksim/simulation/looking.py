@@ -30,7 +30,6 @@ class Looking:
 
     Parameters
     ----------
-    problem : Problem
     asked : Problem, optional
         Whose forces are asked for, where the engine knows other blocks.
 

@@ -177,7 +177,6 @@ class Merging:
 
         Returns
         -------
-        holds : bool
         rates : (blocks, 3) float or None
             Those of a mechanism with which blocks would part; None where not even joints that
             pull would hold them.

@@ -68,12 +68,10 @@ class Motion(Generic[Blocks]):
 
     Parameters
     ----------
-    verdict : Verdict
     reason : str
         The evidence in words.
     overlap : float
         Deepest overlap of blocks, as a share of the motion of their joints.
-    recording : Recording
     """
 
     verdict: Verdict
@@ -101,7 +99,6 @@ def moving_run(
 
     Parameters
     ----------
-    simulation : Simulation
     held : World
         Built from it and at rest, impulses converged as far as they go.
     repeat : callable
@@ -111,7 +108,6 @@ def moving_run(
     until : float, optional
         Time to record for [sqrt(r/g)], or until what has collapsed lies still; by default
         the run stops as soon as its verdict is certain.
-    progress : Progress, optional
     """
     left = simulation.settings.repeats
     motion = _released(simulation, held, until, progress, rests=rests, last=not left)

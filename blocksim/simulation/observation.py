@@ -27,9 +27,6 @@ class Held(Generic[Blocks]):
 
     Parameters
     ----------
-    simulation : Simulation
-    world : World
-    onset : Onset
     splits : int
         Joints of a reduction that turned out to move.
     """
@@ -90,8 +87,6 @@ class Observation:
     ----------
     verdict : Verdict
         Undecided unless onset test and moving run agree, or only the first was asked for.
-    evidence : tuple of Evidence
-    onset : Onset
     motion : Motion or None
         None where the blocks were not let go.
     joints, joints_in_motion : tuple of ObservedJoint
@@ -149,16 +144,11 @@ def observe(
 
     Parameters
     ----------
-    problem : Problem
-    engine : str or Engine
     moving : bool
         Let the blocks go after the onset test. They are not let go where that test is
         undecided: unbalanced impulses would throw them.
-    settings : mapping of str to float
-        Given instead of what the engine's rule says.
     reduction : Reduced, optional
         Simulate these blocks in place of all.
-    progress : Progress, optional
     """
     held = hold(problem, engine, settings=settings, reduction=reduction, progress=progress)
     return conclude(held, moving=moving, progress=progress)

@@ -79,7 +79,6 @@ class Onset:
 
     Parameters
     ----------
-    verdict : Verdict
     acceleration : float
         Largest acceleration of any corner [g].
     mechanism : (blocks, 3) float
@@ -148,10 +147,8 @@ def onset(world: World, simulation: Simulation[Any], progress: Progress = silent
 
     Parameters
     ----------
-    world : World
     simulation : Simulation
         Whose world it is, with what counts as at rest, and the most sweeps to spend.
-    progress : Progress, optional
 
     Returns
     -------

@@ -207,16 +207,10 @@ def read_recording(
 
     Parameters
     ----------
-    path : str or path
     renew : callable, optional
         Makes the header of an older format one of today's.
     maker_of : callable, optional
         As of `from_record`.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, too large, or no recording.
     """
     where = os.fspath(path)
     try:

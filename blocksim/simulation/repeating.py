@@ -35,7 +35,6 @@ def estimated(
 
     Parameters
     ----------
-    recording : Recording
     poses : sequence of (blocks, 3 or 6) float
         Of the other run, from the release on.
     frames : sequence of int, or slice
@@ -88,7 +87,6 @@ def compared(
 
     Parameters
     ----------
-    recording : Recording
     world_at : callable
         Gives the same blocks, at rest, in an engine whose steps are so long.
     """

@@ -74,12 +74,8 @@ class Shaken:
 
     Parameters
     ----------
-    verdict : Verdict
-    reason : str
-    rocking : Rocking
     moved : float
         Largest displacement of any corner at the end [size].
-    recording : Recording
     """
 
     verdict: Verdict
@@ -123,9 +119,6 @@ def shake(
         Go on where a block has sunk by `SUNK`, and the verdict is certain.
     repeat : bool
         Without, they are shaken once.
-    settings : mapping of str to float
-        Given instead of what the engine's rule says.
-    progress : Progress, optional
     """
     step = Simulation.of(problem, engine, settings=settings).settings.step
     stride = max(1, round(FRAME / step))

@@ -144,7 +144,6 @@ class ReducedWorld:
     ----------
     world : World
         Of the blocks simulated.
-    reduction : Reduced
     """
 
     def __init__(self, world: World, reduction: Reduced) -> None:
@@ -181,9 +180,6 @@ class Simulation(Generic[Blocks]):
 
     Parameters
     ----------
-    problem : Problem
-    engine : Engine
-    settings : Settings
     given : mapping of str to float
         Those settings that do not follow the engine's rule.
     reduction : Reduced or None

@@ -65,11 +65,6 @@ def validate_structures(
     -------
     list of StructureRow
         In the order of structures, what is known of them, then methods, `limit` first.
-
-    Raises
-    ------
-    InputError
-        If there is no such engine.
     """
     names = tuple(dict.fromkeys(usual("structures") if engines is None else engines))
     for name in names:

@@ -80,13 +80,6 @@ def validate(
     -------
     list of Validation
         In the order of scenarios, then engines, whatever finishes first.
-
-    Raises
-    ------
-    InputError
-        If there is no such engine.
-    MissingPart
-        If the library of one that is named is not installed.
     """
     names = installed() if engines is None else tuple(dict.fromkeys(engines))
     for name in names:

@@ -68,11 +68,6 @@ def read_answers(path: AnyPath, scenes: Mapping[str, Scene]) -> tuple[Head, dict
         Of JSON lines: who answers, then a line a scene.
     scenes : mapping of str to Scene
         Those that may be answered.
-
-    Raises
-    ------
-    InputError
-        In one line: the first line that is wrong, its value, and what would be accepted.
     """
     said, found = str(path), dict[str, Answer]()
     with opened(path, "answers", "a file of JSON lines", LARGEST) as file:

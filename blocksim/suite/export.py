@@ -166,11 +166,6 @@ def chosen(levels: Collection[float] = (), within: Collection[str] = ()) -> Iter
     """Return scenes at some levels [%] of some groups; all where none is named.
 
     Scenes whose motion is asked for have no level, and come where no level is named.
-
-    Raises
-    ------
-    InputError
-        If there is no such level or group.
     """
     for level in levels:
         known = ", ".join(f"{each:g}" for each in LEVELS)
@@ -194,11 +189,6 @@ def export(folder: AnyPath, scenes: Iterator[Scene]) -> dict[str, int]:
     -------
     dict
         Number of files of each kind.
-
-    Raises
-    ------
-    InputError, MachineError
-        If they cannot be written.
     """
     folder, count = Path(folder), dict.fromkeys(WRITERS, 0)
     for name in WRITERS:

@@ -77,13 +77,7 @@ class Answered(NamedTuple):
 
 @cache
 def version_of(method: str) -> str:
-    """Version of what answers: of blocksim, and of the library an engine is made of.
-
-    Raises
-    ------
-    MissingPart
-        If the engine's library is not installed.
-    """
+    """Version of what answers: of blocksim, and of the library an engine is made of."""
     if method in STATIC:
         return blocksim.__version__
     name = NAMES[0] if method == "auto" else method
@@ -97,11 +91,6 @@ def answer(asked: Sequence[Asked], versions: dict[str, str]) -> Answered:
     ----------
     versions : dict
         Of each method, as where the sweep was started.
-
-    Raises
-    ------
-    MissingPart
-        If an engine is not installed here, or in another version.
     """
     for method in {each.case.method for each in asked}:
         if version_of(method) != versions[method]:

@@ -26,16 +26,8 @@ def cluster(address: str) -> Generator[tuple[Executor, int]]:
 
     Yields
     ------
-    executor : Executor
     threads : int
         Of all workers.
-
-    Raises
-    ------
-    InputError
-        If nobody answers there, or no worker is connected.
-    MissingPart
-        If dask is not installed.
     """
     if find_spec("distributed") is None:
         raise MissingPart("dask", "pip install 'blocksim[dask]'")

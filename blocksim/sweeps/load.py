@@ -107,13 +107,7 @@ def load_design(path: AnyPath) -> Design:
 
 
 def design_of(table: Mapping[str, Any]) -> Design:
-    """Make a design of what its file says.
-
-    Raises
-    ------
-    InputError
-        In one line: the first key that is wrong, its value, and what is allowed.
-    """
+    """Make a design of what its file says."""
     kind = _kind({"kind": CircularArch.name, **table}, "kind")
     parameters = fields_of(kind)
     by_angle = kind is CircularArch and ("half_angle_deg" in table or "kind" not in table)

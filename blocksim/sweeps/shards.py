@@ -25,13 +25,7 @@ LOCK = ".sweep.lock"
 
 @contextmanager
 def locked(folder: Path) -> Generator[None]:
-    """Keep a folder for one sweep; the system lets go of it however the process ends.
-
-    Raises
-    ------
-    InputError
-        If another sweep is writing there, or nobody can.
-    """
+    """Keep a folder for one sweep; the system lets go of it however the process ends."""
     lock = FileLock(folder / LOCK, blocking=False)
     try:
         lock.acquire()
@@ -51,11 +45,6 @@ def write_shard(folder: Path, lines: list[bytes]) -> None:
 
     The name is that of the first row: rows that are done are never asked for again, so
     that no later shard has the same.
-
-    Raises
-    ------
-    InputError, MachineError
-        If they cannot be written, as on a full disk.
     """
     path = folder / f"rows-{_identity(lines[0])}.jsonl"
     write_whole(path, lambda file: file.writelines(lines))

@@ -171,13 +171,7 @@ def outer_sides(polygons: Sequence[Array]) -> list[Array]:
 
 
 def outline(polygons: tuple[Array, ...]) -> Array:
-    """Return the outline of convex polygons that touch, counter-clockwise.
-
-    Raises
-    ------
-    ValueError
-        If it is not one closed line: two bodies, or one with a hole.
-    """
+    """Return the outline of convex polygons that touch, counter-clockwise."""
     if len(polygons) == 1:
         return polygons[0]
     sides = outer_sides(polygons)

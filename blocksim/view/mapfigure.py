@@ -90,22 +90,10 @@ def map_figure(
 
     Parameters
     ----------
-    points : sequence of MapPoint
-    title : str
     central : bool
         Only the middle, where most regions meet (Fig. 11).
-    weight : {"centreline", "sector"}
     friction : FrictionAxis
         The coefficient; without points the friction angle is possible, too.
-
-    Returns
-    -------
-    Figure
-
-    Raises
-    ------
-    ValueError
-        If there are points on an axis of angles.
     """
     if points and friction.angle:
         message = "points are drawn on an axis of coefficients"

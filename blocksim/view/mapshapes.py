@@ -163,7 +163,6 @@ def iso_line(
     ----------
     half_angle : float
         From 0.01 to 3 [rad].
-    weight : {"centreline", "sector"}
 
     Returns
     -------
@@ -197,7 +196,6 @@ def iso_continued(
     ----------
     half_angle : float
         From 0.01 to alpha_L [rad].
-    weight : {"centreline", "sector"}
 
     Returns
     -------

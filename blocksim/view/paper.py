@@ -64,11 +64,6 @@ def paper_figure(number: int) -> Figure:
     ----------
     number : int
         1 to 25.
-
-    Raises
-    ------
-    InputError
-        If there is no such figure.
     """
     require(number in FIGURES, "figure", number, "from 1 to 25")
     with mpl.rc_context(FONT):

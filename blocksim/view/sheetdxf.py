@@ -62,15 +62,7 @@ DASH = 0.4
 
 
 def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
-    """Write a sheet as DXF in metres.
-
-    Raises
-    ------
-    InputError
-        If a body has more than one outline.
-    MissingPart
-        If ezdxf is not installed.
-    """
+    """Write a sheet as DXF in metres."""
     require_library("ezdxf", "DXF", "dxf")
     # It takes a second to import, which nothing else need wait for.
     import ezdxf

@@ -77,17 +77,11 @@ def render(
         default the end.
     height : int
         In pixels; frames are 16:9.
-    progress : Progress, optional
 
     Returns
     -------
     Film
         As it was drawn.
-
-    Raises
-    ------
-    InputError, MachineError
-        If the film is too long or too large, or the file cannot be written.
     """
     out = Path(out)
     kind = out.suffix.removeprefix(".")

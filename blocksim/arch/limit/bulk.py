@@ -39,11 +39,6 @@ def which_stand(
     Returns
     -------
     (...) bool
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
     """
     VOUSSOIRS.require("voussoirs", voussoirs)
     alpha, depth, friction = checked_arrays(weight, half_angle=half_angle, eta=eta, mu=mu)

@@ -42,11 +42,6 @@ def collapse_of_mode(
     -------
     Collapse
         With associated sliding; rates add up to one.
-
-    Raises
-    ------
-    ValueError
-        If the mode is not possible with these joints.
     """
     active = _active(mode, half_angle, beta_r, beta_s)
     angles = np.unique([angle for angle, _ in active])

@@ -109,18 +109,7 @@ class Conditions:
 
 
 def mechanism(arch: Arch, mu: float) -> Mechanism:
-    """Find statics and collapse mechanism of an arch (15), (16), symmetric as in the paper.
-
-    Parameters
-    ----------
-    mu : float
-        Friction coefficient, inf allowed.
-
-    Raises
-    ------
-    InputError
-        If `mu` is out of range.
-    """
+    """Find statics and collapse mechanism of an arch (15), (16), symmetric as in the paper."""
     ANY_FRICTION.require("mu", mu)
     half = arch.joint_angles[arch.joint_angles >= 0]
     program = conditions(half, arch.eta, mu, arch.centroid_factor)

@@ -108,8 +108,6 @@ def thrust_bounds(
         Of one half of one arch.
     depth : float
         Thickness over radius that the line of thrust may use.
-    mu : float
-        Friction coefficient, inf allowed.
     spread : float
         Radius of the distributed weight over the mean radius, less 1.
     slides : (Bound, Bound), optional
@@ -199,11 +197,6 @@ def stands(arch: Arch, mu: float) -> bool:
 def slack(arch: Arch, mu: float) -> float:
     """Share of thickness and of friction that can be taken away before the arch falls.
 
-    Parameters
-    ----------
-    mu : float
-        Friction coefficient, inf allowed.
-
     Returns
     -------
     float
@@ -230,11 +223,6 @@ def least_friction(arch: Arch) -> float | None:
 
 def weakest_joints(arch: Arch, mu: float) -> tuple[int, ...]:
     """Joints that act where strength is taken away, or added, until the arch barely stands.
-
-    Parameters
-    ----------
-    mu : float
-        Friction coefficient, inf allowed.
 
     Returns
     -------

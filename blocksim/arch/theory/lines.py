@@ -68,11 +68,6 @@ def critical_moment(half_angle: float, critical: Critical, weight: Weight) -> fl
     """Moment m at the crown of an arch at its least thickness.
 
     The line of thrust touches the intrados at the inner hinge.
-
-    Raises
-    ------
-    ValueError
-        If no thickness stands.
     """
     if critical.eta is None or critical.thrust is None or critical.beta_r is None:
         message = f"no thickness stands at a half-angle of {half_angle}"

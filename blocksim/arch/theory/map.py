@@ -98,11 +98,6 @@ def at_points(eta: ArrayLike, mu: ArrayLike, weight: Weight = "centreline") -> M
     -------
     MapPoints
         Of the broadcast shape.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
     """
     ratio, friction = checked_arrays(weight, eta=eta, mu=mu)
     shape_asked = ratio.shape

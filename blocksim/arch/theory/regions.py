@@ -81,11 +81,6 @@ def divide_half_angle(mu: float) -> float:
     ----------
     mu : float
         Friction coefficient, above 0 and finite.
-
-    Raises
-    ------
-    InputError
-        If it is not.
     """
     require(0 < mu < math.inf, "mu", mu, "above 0 and finite")
     thrusts, friction_angle = inner_slidings(np.array([mu]))[0], math.atan(mu)
@@ -194,11 +189,6 @@ def divide(mu: ArrayLike, weight: Weight = "centreline") -> Curve:
     ----------
     mu : (k,) float
         Friction coefficients, above 0 and at most that of point B.
-
-    Raises
-    ------
-    InputError
-        If a friction coefficient is out of range.
     """
     end = landmarks(weight)["B"].mu
     friction = _within(mu, 0.0, end, f"above 0 and at most {end:.10g}, where eta is 2")
@@ -214,11 +204,6 @@ def first_sliding(half_angle: ArrayLike, weight: Weight = "centreline") -> Curve
     ----------
     half_angle : (k,) float
         Half-angles above 0 and below alpha_l, where the purely rotational mode ends [rad].
-
-    Raises
-    ------
-    InputError
-        If a half-angle is out of range.
     """
     alpha, end = np.asarray(half_angle, dtype=float), widest_rotational(weight)
     for angle in alpha.flat:
@@ -236,11 +221,6 @@ def equal_angles(mu: ArrayLike, weight: Weight = "centreline") -> Curve:
     ----------
     mu : (k,) float
         Friction coefficients, that of point S or more, finite.
-
-    Raises
-    ------
-    InputError
-        If a friction coefficient is out of range.
     """
     return _inner_line("S", mu, weight)
 

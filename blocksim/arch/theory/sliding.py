@@ -53,7 +53,6 @@ def inner_slidings(mu: Array) -> tuple[Thrusts, Array]:
 
     Returns
     -------
-    thrusts : Thrusts
     beta_s : (k,) float
         [rad]
     """

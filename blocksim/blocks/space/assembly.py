@@ -58,7 +58,6 @@ class SolidBlock:
     ----------
     hulls : tuple of Polyhedron
         The convex parts it consists of.
-    name : str
     weight : float
         [N]
     centre : (3,) float

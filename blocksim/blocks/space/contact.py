@@ -52,7 +52,6 @@ def contact(first: Polyhedron, second: Polyhedron, slack: float) -> Contact | Ov
 
     Parameters
     ----------
-    first, second : Polyhedron
     slack : float
         Gaps and overlaps up to this are closed [m].
 

@@ -155,11 +155,6 @@ def problem_in_space(data: object) -> Problem[SpatialAssembly]:
     ----------
     data : object
         A dict with the keys of `SpatialFile`.
-
-    Raises
-    ------
-    InputError
-        In one line: the first entry that is wrong, its value, and what would be accepted.
     """
     written = as_said(SpatialFile, data)
     solids = _solids(written)
@@ -185,15 +180,8 @@ def problem_of_solids(
 
     Parameters
     ----------
-    written : SpatialAround
     solids : sequence of Solid
         Of which the assembly was made, each with a name of its own.
-    assembly : SpatialAssembly
-
-    Raises
-    ------
-    InputError
-        In one line: a load on no block.
     """
     acts = acting_of(written, LoadsOf(solids, SPACE), np.array(SpatialAssembly.down))
     return acts.on(assembly, written.friction)

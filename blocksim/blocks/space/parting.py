@@ -14,7 +14,6 @@ def parted(assembly: SpatialAssembly, poses: Array) -> tuple[Array, Array]:
 
     Parameters
     ----------
-    assembly : SpatialAssembly
     poses : (blocks, 6) float
         Centres x, y, z in units of the size, and rotation vectors since they were built.
     """

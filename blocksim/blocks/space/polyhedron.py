@@ -53,11 +53,6 @@ class Polyhedron:
     slack : float
         How far the corners of one face may lie off its plane [m], where they were rounded.
 
-    Raises
-    ------
-    InputError
-        If the points lie in a plane.
-
     Examples
     --------
     >>> import itertools

@@ -50,8 +50,6 @@ def by_active_set(step: Step, guess: Answer, precision: float) -> list[Answer]:
 
     Parameters
     ----------
-    step : Step
-    guess : Answer
     precision : float
         Yield of contacts at which it counts as solved [g].
 

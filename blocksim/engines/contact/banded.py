@@ -38,7 +38,6 @@ class Bands:
     ----------
     before, after : (joints,) int
         Blocks on both sides of each joint, -1 for the ground.
-    blocks : int
     points : (blocks, 2) float, optional
         Where the blocks are: numbered along an axis, those of a wall that touch are near.
     each : int
@@ -233,7 +232,6 @@ class System:
 
     Parameters
     ----------
-    bands : Bands
     band : (places,) float
         The matrix, as from `Bands.band`.
     right : (3 blocks,) float

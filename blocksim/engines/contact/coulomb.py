@@ -163,8 +163,6 @@ class Friction:
 
         Parameters
         ----------
-        glued : (joints, 4) float
-            Normal forces of both contacts if glued, then tangential ones.
         contacts : (joints, 2) int
             What they do.
         held : (joints, 2) float
@@ -178,7 +176,6 @@ class ContactStatus:
 
     Parameters
     ----------
-    friction : Friction
     contacts : (joints, 2) int
 
     Attributes
@@ -212,8 +209,6 @@ class ContactStatus:
 
         Parameters
         ----------
-        glued : (joints, 4) float
-            Normal forces of both contacts if glued, then tangential ones.
         held : (joints, 2) float
             Size of friction; looked at where it is an unknown of its own.
         """
@@ -232,8 +227,6 @@ def cut(glued: Array, mu: Array | float) -> tuple[Array, Contacts]:
 
     Parameters
     ----------
-    glued : (joints, 4) float
-        Normal forces of both contacts if glued, then tangential ones.
     mu : float or (joints, 1) float
         Finite.
 

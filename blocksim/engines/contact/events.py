@@ -24,7 +24,6 @@ def first_closing(gap: Array, rate: Array, later: Array, at_end: Array, step: fl
         At the start and at the end, where all are below 0.
     rate, at_end : (contacts,) float
         Their rates of change.
-    step : float
     """
     shares = np.linspace(0.0, 1.0, PARTS + 1)[1:]
 

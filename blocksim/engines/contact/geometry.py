@@ -92,7 +92,6 @@ class Geometry:
 
         Returns
         -------
-        touch : Touch
         holds : (joints,) bool
         """
         count = len(self._length)

@@ -48,8 +48,6 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
 
     Parameters
     ----------
-    step : Step
-    cones : Cones
     dilates : bool
         Whether friction does; Coulomb's must not be steep.
 

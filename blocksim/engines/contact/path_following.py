@@ -125,7 +125,6 @@ class _Start:
         How forces as if glued change at x as `left` falls by 1.
     pull : (3 blocks,) float
         How forces on blocks do.
-    left : float
     """
 
     x: Array
@@ -159,7 +158,6 @@ def _follow(step: Step, start: _Start, most: int) -> tuple[Array, Array, int] | 
     x : (3 blocks,) float
     held : (joints, 2) float
         Friction of contacts that slide with steep friction.
-    pieces : int
     """
     path = _Path(step, start)
     for piece in range(1, most):

@@ -237,7 +237,6 @@ class _Tried:
 
     Parameters
     ----------
-    step : Step
     precision : float
         Yield of contacts at which it counts as solved [g].
     moves : bool

@@ -72,14 +72,12 @@ class Step:
 
     Parameters
     ----------
-    bands : Bands
     rows : (joints, 4, 6) float
         Normal velocities of the two contacts, then the tangential ones.
     rates : (joints, 4) float
         The same velocities without acceleration, over the step.
     free : (3 blocks,) float
         Accelerations without contact.
-    friction : Friction
     """
 
     bands: Bands
@@ -140,7 +138,6 @@ class Slides:
 
     Parameters
     ----------
-    bands : Bands
     rows : (joints, 4, 6) float
         Normal velocities of the two contacts, then the tangential ones.
     contacts : (joints, 2) int
@@ -177,7 +174,6 @@ class Slides:
             solutions of the system with the right side first, shape (3 blocks, 1 + k).
         target : (joints, 2) float
             Normal velocities that would leave contacts without pressure.
-        stiffness : float
 
         Returns
         -------
@@ -205,7 +201,6 @@ class Linear:
 
     Parameters
     ----------
-    step : Step
     contacts : (joints, 2) int
     stiffness : float
         Of the springs.
@@ -231,7 +226,6 @@ class Linear:
 
         Parameters
         ----------
-        x : (3 blocks,) float
         glued : (joints, 4) float
             Forces of the springs at x.
         held : (joints, 2) float

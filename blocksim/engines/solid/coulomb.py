@@ -61,7 +61,6 @@ def solve(step: Step, last: Array | None, *, paths: bool = True) -> Answer:
 
     Parameters
     ----------
-    step : Step
     last : (points, 2, 3) float or None
         Forces, and velocities over the step.
     paths : bool, optional
@@ -249,7 +248,6 @@ def dilating(step: Step, slip: Array | float = 0.0, finest: float = FINEST) -> A
 
     Parameters
     ----------
-    step : Step
     slip : (points,) float, optional
         By mu times this much less than what slips opens.
     finest : float, optional

@@ -34,7 +34,6 @@ class Facing:
 
     Parameters
     ----------
-    hulls : Hulls
     pairs : (pairs, 2) int
     faces : tuple of (pairs,) int
         Of which of a pair, 0 or 1, the face is, and which of its faces.

@@ -80,7 +80,6 @@ def hulls_of(assembly: SpatialAssembly, axes: Array) -> Hulls:
 
     Parameters
     ----------
-    assembly : SpatialAssembly
     axes : (blocks, 3, 3) float
         Columns are the axes of each block's frame.
     """

@@ -33,7 +33,6 @@ def followed(step: Step, rounded: float) -> Array | None:
 
     Parameters
     ----------
-    step : Step
     rounded : float
         Smoothing of the slip over that of the product.
     """
@@ -114,7 +113,6 @@ class Plus:
     Parameters
     ----------
     z : (points, 3) float
-    smooth : float
     """
 
     def __init__(self, z: Array, smooth: float) -> None:

@@ -61,11 +61,6 @@ def most(
         more than friction needs, and at most 1.
     lift : float
         What each normal force adds to the unknown: rates then open every point by that much.
-
-    Raises
-    ------
-    Unsolved
-        If the solver gives up.
     """
     rows, points = int(matrix.shape[0]), len(friction)
     presses = live is None

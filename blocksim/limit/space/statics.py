@@ -37,7 +37,6 @@ class SpatialEquilibrium:
 
     Parameters
     ----------
-    contacts : Contacts
     found : Answer
         What the programme found.
 
@@ -136,25 +135,13 @@ class SpatialCollapse:
 
 
 def can_rest(problem: Problem[SpatialAssembly]) -> SpatialEquilibrium:
-    """Do in space what `limit.equilibrium` does.
-
-    Raises
-    ------
-    Unsolved
-        If the solver gives up.
-    """
+    """Do in space what `limit.equilibrium` does."""
     contacts = Contacts(problem)
     return SpatialEquilibrium(contacts, contacts.most(problem.applied_forces().ravel()))
 
 
 def largest_load(problem: Problem[SpatialAssembly]) -> SpatialCollapse:
-    """Do in space what `limit.collapse` does.
-
-    Raises
-    ------
-    Unsolved
-        If the solver gives up.
-    """
+    """Do in space what `limit.collapse` does."""
     contacts = Contacts(problem)
     pull, live = problem.with_load(0.0).applied_forces().ravel(), contacts.live
     # In units of its own size, as loads may be of any.
