@@ -53,10 +53,7 @@ THIN = 0.02
 def dict_of(shown: object) -> dict[str, Any]:
     """Return a thing as JSON has it.
 
-    Returns
-    -------
-    dict
-        Of an answer what `--json` prints; of a problem its structure file, in space what
+    Returns: Of an answer what `--json` prints; of a problem its structure file, in space what
         answers say of it; of a recording what it shows, without its poses.
     """
     record, _, _ = _KNOWN[type(shown)]
@@ -72,10 +69,7 @@ def lines_of(shown: object) -> list[str]:
 def figure_of(shown: object) -> Figure:
     """Draw a thing.
 
-    Returns
-    -------
-    Figure
-        Of a check with its forces or its mechanism; of the least thickness of an arch the
+    Returns: Of a check with its forces or its mechanism; of the least thickness of an arch the
         arch of that thickness; of a recording its last frame.
     """
     _, _, figure = _KNOWN[type(shown)]

@@ -12,27 +12,20 @@ from blocksim.arch.modes import Mode
 class ArchAnswer:
     """Ratios and modes of an arch.
 
-    Parameters
-    ----------
-    shape : Arch
-        The arch asked about.
-    eta_limit, eta_theory : float or None
-        Least thickness over radius, of the voussoirs as built and of the continuous arch, where
-        gravity does not lean. It is 0 where any thickness stands (some arches of three
-        voussoirs), and None where no thickness up to 2 stands.
-    mode : Mode or None
-        How this arch starts to collapse. An engine takes it from the mechanism of the onset
+    `shape`: The arch asked about.
+    `eta_limit`, `eta_theory`: Least thickness over radius, of the voussoirs as built and of the
+        continuous arch, where gravity does not lean. It is 0 where any thickness stands (some
+        arches of three voussoirs), and None where no thickness up to 2 stands.
+    `mode`: How this arch starts to collapse. An engine takes it from the mechanism of the onset
         test, `limit` from eqs (15) and (16). `theory` knows the mode at the least thickness
         only, and gives that. None where the arch stands, or where its joints form none of the
         modes.
-    mode_in_motion : Mode or None
-        As seen in the moving run after a displacement of `motion.EARLY`; see `Observation`.
-    mode_limit : Mode or None
-        Mode of the voussoirs as built at their least thickness, where `mode` may be another.
-        Where no thickness up to 2 stands, it is the mode at 2.
-    modes_theory : tuple of Mode
-        Modes of the continuous arch at its least thickness: several on a line of the map, where
-        they coincide.
+    `mode_in_motion`: As seen in the moving run after a displacement of `motion.EARLY`; see
+        `Observation`.
+    `mode_limit`: Mode of the voussoirs as built at their least thickness, where `mode` may be
+        another. Where no thickness up to 2 stands, it is the mode at 2.
+    `modes_theory`: Modes of the continuous arch at its least thickness: several on a line of
+        the map, where they coincide.
     """
 
     shape: Arch
@@ -53,15 +46,10 @@ class ArchAnswer:
 class ArchBracket(ArchAnswer):
     """The same of the least thickness, between two ratios that were both tried.
 
-    Parameters
-    ----------
-    eta_low : float or None
-        Largest ratio that collapsed; None where none did.
-    eta_high : float or None
-        Smallest ratio that stood, 0 where any stands; None where none up to 2 did.
-    thrust, beta_r, beta_s : float or None
-        Scaled thrust; angles of the inner hinge and inner sliding joint [rad]. For static
-        methods.
+    `eta_low`: Largest ratio that collapsed; None where none did.
+    `eta_high`: Smallest ratio that stood, 0 where any stands; None where none up to 2 did.
+    `thrust`, `beta_r`, `beta_s`: Scaled thrust; angles of the inner hinge and inner sliding
+        joint [rad]. For static methods.
     """
 
     eta_low: float | None = None

@@ -22,12 +22,8 @@ from blocksim.limit.carried import Carried, inverse
 def carried_by_arch(arch: Arch, problem: Problem, joint: int | None = None) -> Carried:
     """Find what an arch carries under its own weight; any joint has the same thrust.
 
-    Parameters
-    ----------
-    problem : Problem
-        Of this arch, under its own weight.
-    joint : int, optional
-        Where thrust is told; by default the crown, or the joint to its left.
+    `problem`: Of this arch, under its own weight.
+    `joint`: Where thrust is told; by default the crown, or the joint to its left.
     """
     mu = problem.mu
     least = least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight).eta
@@ -88,10 +84,7 @@ def joint_forces(arch: Arch, thrust: float, share: float = 1.0) -> Array:
     Of all lines of thrust with that thrust it is the middle one of those that a share of the
     width contains.
 
-    Returns
-    -------
-    (n + 1, 2, 2) float
-        Along normal and tangent, in units of gamma t d r.
+    Returns (n + 1, 2, 2): Along normal and tangent, in units of gamma t d r.
     """
     angle, size = arch.joint_angles, np.abs(arch.joint_angles)
     normal = thrust * np.cos(size) + size * np.sin(size)

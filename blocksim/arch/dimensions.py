@@ -36,12 +36,8 @@ one is taken for N/m^3, below it for a density in kg/m^3."""
 class Line:
     """One of the three arcs of an arch.
 
-    Parameters
-    ----------
-    span, rise : float
-        Between its ends, and of its top above them [m].
-    at : {"intrados", "centreline", "extrados"}
-        Which one it is.
+    `span`, `rise`: Between its ends, and of its top above them [m].
+    `at`, {"intrados", "centreline", "extrados"}: Which one it is.
     """
 
     span: float
@@ -77,14 +73,9 @@ class Line:
 class Dimensions:
     """Span, rise and thickness of an arch.
 
-    Parameters
-    ----------
-    span, rise : float
-        Of one of its lines [m].
-    thickness : float
-        [m]
-    at : {"intrados", "centreline", "extrados"}
-        Which line was measured.
+    `span`, `rise`: Of one of its lines [m].
+    `thickness`: [m]
+    `at`, {"intrados", "centreline", "extrados"}: Which line was measured.
     """
 
     span: float
@@ -146,10 +137,7 @@ def friction_angle(mu: float) -> float:
 def require_measured(given: Mapping[str, Any]) -> None:
     """Raise `InputError` for dimensions that nobody has measured, as of a wrong unit.
 
-    Parameters
-    ----------
-    given : mapping
-        `span`, `rise`, and `thickness` and `at` where they are known.
+    `given`: `span`, `rise`, and `thickness` and `at` where they are known.
     """
     line = Line(**{name: given[name] for name in ("span", "rise", "at") if name in given})
     span, rise, thickness = line.span, line.rise, given.get("thickness")

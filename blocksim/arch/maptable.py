@@ -65,11 +65,8 @@ def special_points(weight: Weight = "centreline") -> tuple[Landmark, ...]:
 def rates_of(point: Landmark, mode: Mode, weight: Weight) -> dict[str, float]:
     """Rates of one mode at a point, by eqs (15) and (16), with sliding that dilates.
 
-    Returns
-    -------
-    dict of str to float
-        Of a joint of either half, `crown_extrados` and so on in the order of `RATES`; those
-        of the whole arch add up to 1. Turning [rad/s] and sliding [r/s] of any scale.
+    Returns: Of a joint of either half, `crown_extrados` and so on in the order of `RATES`;
+        those of the whole arch add up to 1. Turning [rad/s] and sliding [r/s] of any scale.
     """
     beta_s = inner_sliding(point.mu)[1] if math.isfinite(point.mu) else None
     found = collapse_of_mode(
@@ -96,10 +93,7 @@ def rates_of(point: Landmark, mode: Mode, weight: Weight) -> dict[str, float]:
 def line_points(name: str, weight: Weight = "centreline") -> tuple[Landmark, ...]:
     """Return points along one of the lines between regions.
 
-    Parameters
-    ----------
-    name : str
-        Of `LINES`.
+    `name`: Of `LINES`.
     """
     marks = landmarks(weight)
     if name == "first sliding":

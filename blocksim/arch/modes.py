@@ -44,14 +44,9 @@ _DESCRIPTIONS = {
 class ActiveJoint(NamedTuple):
     """A joint that takes part in the collapse, on one half of the arch.
 
-    Parameters
-    ----------
-    angle : float
-        From the crown, not negative [rad].
-    slides : bool
-        True if it slides, False if it turns.
-    intrados : bool
-        True if it turns about its intrados end.
+    `angle`: From the crown, not negative [rad].
+    `slides`: True if it slides, False if it turns.
+    `intrados`: True if it turns about its intrados end.
     """
 
     angle: float
@@ -62,18 +57,10 @@ class ActiveJoint(NamedTuple):
 def name_mode(active: Iterable[ActiveJoint], crown: float) -> Mode | None:
     """Name the mode of a set of active joints.
 
-    Parameters
-    ----------
-    active : iterable of ActiveJoint
-        One half of the arch, in any order.
-    crown : float
-        Joints up to this angle count as the crown: an arch with an odd number of
-        voussoirs has a keystone, and its crown hinge shows beside it [rad].
-
-    Returns
-    -------
-    Mode or None
-        None where the joints form none of the seven modes.
+    `active`: One half of the arch, in any order.
+    `crown`: Joints up to this angle count as the crown: an arch with an odd number of voussoirs
+        has a keystone, and its crown hinge shows beside it [rad].
+    Returns: None where the joints form none of the seven modes.
     """
     joints = set(active)
     if any(joint.slides for joint in joints):
@@ -95,10 +82,7 @@ def observed_mode(joints: tuple[ObservedJoint, ...], arch: Arch) -> Mode | None:
     A hinge that falls between two joints shows as both of them: neighbours that do the
     same count as one, at the place of the outermost.
 
-    Returns
-    -------
-    Mode or None
-        None where they form none of the seven modes.
+    Returns: None where they form none of the seven modes.
     """
     spacing = 2 * arch.half_angle / arch.voussoirs
     active: list[ActiveJoint] = []

@@ -51,12 +51,8 @@ MIRROR = np.array([-1.0, 1.0, -1.0, 1.0, 1.0, -1.0])
 class Reduction:
     """Half an arch and those of its joints that may move.
 
-    Parameters
-    ----------
-    whole : Assembly
-        The arch: symmetric, n blocks between n + 1 joints, from left to right.
-    kept : tuple of int
-        Joints of the left half that may move, in order: at least the springing and, for
+    `whole`: The arch: symmetric, n blocks between n + 1 joints, from left to right.
+    `kept`: Joints of the left half that may move, in order: at least the springing and, for
         even n, the one at the crown.
     """
 
@@ -200,16 +196,9 @@ class Reduction:
     def resultants(self, resultants: Array) -> Array:
         """Return what all joints carry at rest, from what the blocks' joints carry.
 
-        Parameters
-        ----------
-        resultants : (joints, 3) float
-            Of `assembly`, as `TellsForces.resultants`.
-
-        Returns
-        -------
-        (n + 1, 3) float
-            Of `whole`, in its mean weights. Voussoirs of a block accelerate with it, which
-            takes the difference of the forces on both of their sides.
+        `resultants`, (joints, 3): Of `assembly`, as `TellsForces.resultants`.
+        Returns (n + 1, 3): Of `whole`, in its mean weights. Voussoirs of a block accelerate
+            with it, which takes the difference of the forces on both of their sides.
         """
         blocks, size = self.assembly, self.whole.size
         total = resultants[:-1] - resultants[1:]
@@ -230,12 +219,8 @@ class Reduction:
     def overstrained(self, resultants: Array, mu: float, allowed: float) -> tuple[int, ...]:
         """Return merged joints that would open or slip, the worst of those side by side.
 
-        Parameters
-        ----------
-        resultants : (n + 1, 3) float
-            Of all joints, as `resultants` returns them.
-        allowed : float
-            Force beyond the strength of a joint that counts as none [mean weights].
+        `resultants`, (n + 1, 3): Of all joints, as `resultants` returns them.
+        `allowed`: Force beyond the strength of a joint that counts as none [mean weights].
         """
         joints = self.whole.joint_arrays
         merged = self.merged

@@ -118,12 +118,8 @@ def check_batches(
 ) -> Iterator[Told]:
     """Tell of many structures whether they stand; see `check_many`.
 
-    Parameters
-    ----------
-    batches : iterable of iterables
-        Structures; each batch is answered as soon as it is there, as by `check_many`.
-    friction, workers
-        As of `check_many`.
+    `batches`: Structures; each batch is answered as soon as it is there, as by `check_many`.
+    `friction`, `workers`: As of `check_many`.
     """
     count = workers or os.cpu_count() or 1
     pool, coming = _Pool(count), _Coming(batches)

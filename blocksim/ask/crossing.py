@@ -42,15 +42,10 @@ HEADINGS = ("right", "left")
 class Crossing(Shown):
     """What a vehicle that crosses a structure comes to.
 
-    Parameters
-    ----------
-    problem : Problem
-        The structure, with the vehicle at its worst place as its live load.
-    low : float
-        What the load factor is at least, everywhere.
-    places : tuple of Place
-        Where load factors were found, by heading and from left to right. Between two of them
-        the inverse of the load factor is convex where nothing spreads loads.
+    `problem`: The structure, with the vehicle at its worst place as its live load.
+    `low`: What the load factor is at least, everywhere.
+    `places`: Where load factors were found, by heading and from left to right. Between two of
+        them the inverse of the load factor is convex where nothing spreads loads.
     """
 
     problem: Problem
@@ -99,10 +94,7 @@ def crossing(problem: Problem, vehicle: Vehicle, *, progress: Progress = silent)
 
     Axles beyond the structure stand on the ground.
 
-    Parameters
-    ----------
-    problem : Problem
-        In its plane, at rest without live loads; how fill spreads loads is its own.
+    `problem`: In its plane, at rest without live loads; how fill spreads loads is its own.
 
     Examples
     --------

@@ -22,14 +22,9 @@ from blocksim.engines import get_engine
 class Finding:
     """One method on this machine.
 
-    Parameters
-    ----------
-    finest : float
-        Smallest relative width of a bracket it can answer for.
-    remedy : str or None
-        How to get what is missing; None where it can run.
-    version : str or None
-        Of its library, or of blocksim where it is blocksim's own.
+    `finest`: Smallest relative width of a bracket it can answer for.
+    `remedy`: How to get what is missing; None where it can run.
+    `version`: Of its library, or of blocksim where it is blocksim's own.
     """
 
     method: str

@@ -25,14 +25,9 @@ Change = tuple[Callable[[float], Problem], float, bool]
 class End:
     """One end of an interval in which it stands.
 
-    Parameters
-    ----------
-    limit : float
-        The value of limit analysis.
-    falls, stands : float or None
-        The nearest values that collapsed and that stood.
-    confirmed : bool or None
-        As of `blocksim.ask.bracket.Search`.
+    `limit`: The value of limit analysis.
+    `falls`, `stands`: The nearest values that collapsed and that stood.
+    `confirmed`: As of `blocksim.ask.bracket.Search`.
     """
 
     limit: float
@@ -52,12 +47,8 @@ class Stands:
 def tried_ends(family: Family[Any], first: Search, ask: Ask) -> tuple[Stands, ...] | None:
     """Try all ends of the intervals that limit analysis knows; None where it knows none.
 
-    Parameters
-    ----------
-    first : Search
-        What came of `family.exact()`.
-    ask : callable
-        What is asked at the other ends.
+    `first`: What came of `family.exact()`.
+    `ask`: What is asked at the other ends.
     """
     if family.intervals is None:
         return None

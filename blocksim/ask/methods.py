@@ -65,18 +65,12 @@ def choose(
 ) -> Method:
     """Return the method asked for; for `auto` the cheapest that can answer.
 
-    Parameters
-    ----------
-    method : str or Method
-        One of `CHOICES`; an engine of one's own by its name, as ``module:ENGINE``, or itself.
-    tol : float
-        Relative width of the bracket asked for, 0 where there is none.
-    problem : Problem, optional
-        What the question is about, where it is known; an upright arch, if not.
-    moving : bool
-        Whether it is of motion at all.
-    reduce : bool, optional
-        Whether no more blocks are to be simulated than it takes; see `reduces`.
+    `method`: One of `CHOICES`; an engine of one's own by its name, as ``module:ENGINE``, or
+        itself.
+    `tol`: Relative width of the bracket asked for, 0 where there is none.
+    `problem`: What the question is about, where it is known; an upright arch, if not.
+    `moving`: Whether it is of motion at all.
+    `reduce`: Whether no more blocks are to be simulated than it takes; see `reduces`.
     """
     auto = method == "auto"
     chosen = _cheapest(tol, problem, moving=moving) if auto else _named(method)

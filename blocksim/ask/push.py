@@ -25,15 +25,10 @@ STEPS = 400
 class Curve:
     """How much of its weight pushes blocks sideways in equilibrium, as they move.
 
-    Parameters
-    ----------
-    moved : tuple of float
-        How far the centre of mass of all blocks has moved that way [m].
-    pushes : tuple of float
-        Over the weight of each block [g]; the first is what is borne as built.
-    ends : str
-        `none` where nothing is borne any more; `slides`, `parts` or `closes` where a joint does
-        what is not followed; `range` where no end came; `never` where any push is borne.
+    `moved`: How far the centre of mass of all blocks has moved that way [m].
+    `pushes`: Over the weight of each block [g]; the first is what is borne as built.
+    `ends`: `none` where nothing is borne any more; `slides`, `parts` or `closes` where a joint
+        does what is not followed; `range` where no end came; `never` where any push is borne.
     """
 
     way: str
@@ -89,12 +84,8 @@ def pushed(problem: Problem, share: float) -> Problem:
 
     To the side to which it bears less; a note says what it bears both ways.
 
-    Parameters
-    ----------
-    problem : Problem
-        In its plane, on ground at rest.
-    share : float
-        [g]
+    `problem`: In its plane, on ground at rest.
+    `share`: [g]
     """
     PUSH.require("push", share)
     both = borne(problem)

@@ -35,12 +35,8 @@ NOT_FOUND = "it can rest; whether it must was not found out in the time allowed"
 class Moving:
     """A motion that friction lets begin although blocks can rest.
 
-    Parameters
-    ----------
-    accelerations : (blocks, 3) float
-        x, y [g] and rotation [g/size].
-    goes_on : bool
-        Whether it goes on in `direct`, let go slowly along it.
+    `accelerations`, (blocks, 3): x, y [g] and rotation [g/size].
+    `goes_on`: Whether it goes on in `direct`, let go slowly along it.
     """
 
     accelerations: Array
@@ -77,21 +73,12 @@ def rest_of(
 ) -> tuple[Rest | None, Moving | None]:
     """Tell what friction allows blocks at rest.
 
-    Parameters
-    ----------
-    problem : Problem or None
-        Where it is to be found out whether blocks must rest.
-    exists : bool or None
-        Whether there are forces of equilibrium; None where that was not found out.
-    moved : bool
-        Whether a motion was seen.
-
-    Returns
-    -------
-    rest : {"must", "can", "cannot"} or None
-        None where it was not found out whether it must rest.
-    motion : Moving or None
-        Where it was asked for and found.
+    `problem`: Where it is to be found out whether blocks must rest.
+    `exists`: Whether there are forces of equilibrium; None where that was not found out.
+    `moved`: Whether a motion was seen.
+    Returns `rest`, {"must", "can", "cannot"} or None: None where it was not found out whether
+        it must rest.
+    Returns `motion`: Where it was asked for and found.
     """
     if not exists:
         return (None if exists is None else "cannot"), None
@@ -118,12 +105,9 @@ def let_go(
 
     What moves is let go without what rests, which may be heavier by far.
 
-    Parameters
-    ----------
-    way : (blocks, 3) float
-        Velocities or accelerations in proportion to those with which they begin.
-    until : float
-        Displacement at which it ends [size].
+    `way`, (blocks, 3): Velocities or accelerations in proportion to those with which they
+        begin.
+    `until`: Displacement at which it ends [size].
     """
     from blocksim.engines.direct import ENGINE, Blocks
     from blocksim.simulation.recording import Recording

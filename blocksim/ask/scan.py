@@ -34,14 +34,9 @@ TRIED = 25
 class Scan:
     """What limit analysis says at values of a parameter.
 
-    Parameters
-    ----------
-    at : callable
-        Value to problem.
-    ends : two of float
-        Between which values.
-    now : float
-        The value at hand. Values count up to the first on either side of it of which nothing
+    `at`: Value to problem.
+    `ends`: Between which values.
+    `now`: The value at hand. Values count up to the first on either side of it of which nothing
         can be built.
     """
 
@@ -119,10 +114,7 @@ def least_friction(problem: Problem[Any], most: float) -> tuple[Interval, ...]:
 def root(at: At, low: float, high: float, *, rises: bool) -> float:
     """Find where the margin of equilibrium vanishes between two values, one of which stands.
 
-    Parameters
-    ----------
-    rises : bool
-        Whether it is the higher one that stands.
+    `rises`: Whether it is the higher one that stands.
     """
 
     def margin(value: float) -> float:

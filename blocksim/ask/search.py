@@ -41,21 +41,11 @@ class Answer(NamedTuple):
 class Bisection:
     """Bisection on a judge that may answer `undecided`.
 
-    Parameters
-    ----------
-    judge : callable
-        Value to answer.
-    floor, ceiling : float
-        Values beyond which the search is given up.
-    name : str
-        What the value is.
-
-    Attributes
-    ----------
-    low, high : float or None
-        Largest ratio that collapsed, smallest that stood.
-    runs, undecided : int
-        Ratios tried, and those without an answer.
+    `judge`: Value to answer.
+    `floor`, `ceiling`: Values beyond which the search is given up.
+    `name`: What the value is.
+    `low`, `high`: Largest ratio that collapsed, smallest that stood.
+    `runs`, `undecided`: Ratios tried, and those without an answer.
     """
 
     def __init__(

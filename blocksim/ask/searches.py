@@ -41,22 +41,15 @@ ALIKE = 0.005
 class Search:
     """What a search for the change from standing to falling came to.
 
-    Parameters
-    ----------
-    falls, stands : float or None
-        The nearest values that collapsed and that stood; None where there were none.
-    confirmed : bool or None
-        Whether moving runs, or a second linear programme, agree at the ends found; None
-        where none were made.
-    runs, undecided : int
-        Values tried, and those without an answer.
-    reason : str
-        What the answer rests on.
-    blocks, splits : int or None
-        Most blocks simulated at any value, and how many joints in all a reduction merged
-        and had to split again; None for static methods.
-    collapse : Observation or None
-        By an engine, what was seen at the value that collapsed.
+    `falls`, `stands`: The nearest values that collapsed and that stood; None where there were
+        none.
+    `confirmed`: Whether moving runs, or a second linear programme, agree at the ends found;
+        None where none were made.
+    `runs`, `undecided`: Values tried, and those without an answer.
+    `reason`: What the answer rests on.
+    `blocks`, `splits`: Most blocks simulated at any value, and how many joints in all a
+        reduction merged and had to split again; None for static methods.
+    `collapse`: By an engine, what was seen at the value that collapsed.
     """
 
     falls: float | None = None
@@ -74,18 +67,11 @@ class Search:
 class Sought:
     """The change from standing to falling that an engine is to find.
 
-    Parameters
-    ----------
-    name : str
-        What the value is.
-    start : float
-        Where to begin.
-    within : tuple of float
-        Values beyond which the search is given up.
-    more_is_safer : bool
-        Whether it stands above the change.
-    given : Taken
-        How finely, and whether both ends are to be confirmed.
+    `name`: What the value is.
+    `start`: Where to begin.
+    `within`: Values beyond which the search is given up.
+    `more_is_safer`: Whether it stands above the change.
+    `given`: How finely, and whether both ends are to be confirmed.
     """
 
     name: str
@@ -194,10 +180,7 @@ def proofs_beside(
 ) -> tuple[Proof, ...]:
     """Prove that it falls and stands a little to both sides of a value; empty if not proved.
 
-    Parameters
-    ----------
-    rises : bool
-        Whether it stands above the value.
+    `rises`: Whether it stands above the value.
     """
     for sure in SURE:
         ends = value * (1 - sure), value * (1 + sure)
@@ -246,10 +229,7 @@ def by_programmes(
 def by_engine(held_at: Callable[[float], Held[Any]], sought: Sought) -> Search:
     """Search with the onset test, then, if asked for, let the blocks go at both ends.
 
-    Parameters
-    ----------
-    held_at : callable
-        Value to blocks after the onset test.
+    `held_at`: Value to blocks after the onset test.
     """
     ends: dict[Verdict, tuple[float, Held[Any]]] = {}
     blocks = splits = both = 0

@@ -57,14 +57,9 @@ class OpenJoint:
 class Event:
     """Something that happens as supports move.
 
-    Parameters
-    ----------
-    value : float
-        How far the supports are [m].
-    what : str
-        As of `blocksim.limit.spreading.Event`.
-    joints : tuple of OpenJoint
-        Those that are open after it.
+    `value`: How far the supports are [m].
+    `what`: As of `blocksim.limit.spreading.Event`.
+    `joints`: Those that are open after it.
     """
 
     value: float
@@ -76,17 +71,11 @@ class Event:
 class Slow:
     """What `direct` saw on supports that move slowly.
 
-    Parameters
-    ----------
-    low : float or None
-        Farthest the supports were when the blocks stayed if they stopped [m]; None where they
-        did not even at the start.
-    high : float or None
-        Nearest at which the blocks fell although they stopped; None where they never fell.
-    solved : bool
-        Whether every step was.
-    runs : int
-        How often the supports were stopped.
+    `low`: Farthest the supports were when the blocks stayed if they stopped [m]; None where
+        they did not even at the start.
+    `high`: Nearest at which the blocks fell although they stopped; None where they never fell.
+    `solved`: Whether every step was.
+    `runs`: How often the supports were stopped.
     """
 
     low: float | None
@@ -182,12 +171,8 @@ class Spreading:
         is a matter of the supports' speed. So the position is sought, by halving, from
         which on blocks do not stay where they are when the supports stop.
 
-        Parameters
-        ----------
-        tol : float
-            Relative distance between the two positions.
-        highest : float
-            How far the supports move at most [m].
+        `tol`: Relative distance between the two positions.
+        `highest`: How far the supports move at most [m].
         """
         problem = self.problem
         settings = replace(USUAL, step=STEP)
@@ -221,10 +206,7 @@ class Spreading:
     def recorded(self, progress: Progress = silent) -> Recording:
         """Move the supports by `direct`, faster than `slowly`, until the blocks have fallen.
 
-        Returns
-        -------
-        Recording
-            Of the blocks and, after them, the supports that move.
+        Returns: Of the blocks and, after them, the supports that move.
         """
         settings = USUAL
         level = all(move.direction[1] >= 0 and not move.turn for move in self.problem.moves)

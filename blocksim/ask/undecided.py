@@ -68,10 +68,7 @@ SAME = 5e-7
 def closing_of_verdict(problem: Problem, *, stands: bool) -> tuple[Evidence, ...]:
     """Say whether blocks stand as well with them grown and shrunk; nothing without gaps.
 
-    Parameters
-    ----------
-    stands : bool
-        Whether forces of equilibrium exist, as it is.
+    `stands`: Whether forces of equilibrium exist, as it is.
     """
     if not closed_gaps(problem.assembly):
         return ()

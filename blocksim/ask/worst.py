@@ -38,19 +38,12 @@ AT_FIRST = 48
 class Place:
     """Where a vehicle stands, and what the structure bears there.
 
-    Parameters
-    ----------
-    position : float
-        Of the vehicle's origin [m].
-    heading : {"right", "left"}
-        Left where the vehicle is turned round.
-    axles : tuple of float
-        Where they stand [m].
-    live : (blocks, 3) float
-        What the vehicle does to the blocks [mean weight, and that times the size]. At a joint
-        it is what it does just beside it, on the side that is worse.
-    load_factor : float
-        inf where nothing of it is on the structure.
+    `position`: Of the vehicle's origin [m].
+    `heading`, {"right", "left"}: Left where the vehicle is turned round.
+    `axles`: Where they stand [m].
+    `live`, (blocks, 3): What the vehicle does to the blocks [mean weight, and that times the
+        size]. At a joint it is what it does just beside it, on the side that is worse.
+    `load_factor`: inf where nothing of it is on the structure.
     """
 
     position: float
@@ -180,15 +173,8 @@ class WorstPlace:
     def _lives(self, vehicle: Vehicle, positions: Array) -> Array:
         """Return what a vehicle does to the blocks, none of its axles at a corner.
 
-        Parameters
-        ----------
-        positions : (k,) float
-            [m]
-
-        Returns
-        -------
-        (k, blocks, 3) float
-            As of `Place`.
+        `positions`, (k,): [m]
+        Returns (k, blocks, 3): As of `Place`.
         """
         spread, count = self._problem.dispersal, len(self._centres)
         found = np.zeros((len(positions), count, 3))

@@ -45,14 +45,9 @@ class Load:
 class Move:
     """How a support moves as supports spread or settle.
 
-    Parameters
-    ----------
-    direction : (2,) float
-        Way of the support over the parameter, which is in metres.
-    turn : float
-        Rotation over the parameter [rad/m], counter-clockwise.
-    about : (2,) float
-        Point of the support about which it turns [m].
+    `direction`, (2,): Way of the support over the parameter, which is in metres.
+    `turn`: Rotation over the parameter [rad/m], counter-clockwise.
+    `about`, (2,): Point of the support about which it turns [m].
     """
 
     support: int

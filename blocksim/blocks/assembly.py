@@ -44,22 +44,15 @@ rotation vector's components along x and y, from engines in three dimensions."""
 class JointArrays(NamedTuple):
     """All joints of an assembly at once, lengths in units of its size.
 
-    Parameters
-    ----------
-    before, after : (joints,) int
-        Indices of the blocks, `SUPPORT` for the ground.
-    ends : (joints, 2, 2) float
-        Inner and outer end.
-    normal, tangent : (joints, 2) float
-    length : (joints,) float
-    friction : (joints,) float
-        Of each joint's own; nan where it is that of all others.
-    faces : (joints, 2, 2, 2) float
-        Faces of `before` and `after`, their inner and outer ends.
-        A corner's are that which carries it, and twice the corner.
-    is_corner : (joints,) bool
-    carrier : (joints,) int
-        Whose face carries a corner: 0 that of `before`, 1 that of `after`.
+    `before`, `after`, (joints,): Indices of the blocks, `SUPPORT` for the ground.
+    `ends`, (joints, 2, 2): Inner and outer end.
+    `normal`, `tangent`, (joints, 2).
+    `length`, (joints,).
+    `friction`, (joints,): Of each joint's own; nan where it is that of all others.
+    `faces`, (joints, 2, 2, 2): Faces of `before` and `after`, their inner and outer ends. A
+        corner's are that which carries it, and twice the corner.
+    `is_corner`, (joints,).
+    `carrier`, (joints,): Whose face carries a corner: 0 that of `before`, 1 that of `after`.
     """
 
     before: NDArray[np.int64]

@@ -114,12 +114,8 @@ def _outline(corners: list[list[float]]) -> tuple[float, bool]:
 class Support:
     """A body that stays where it is.
 
-    Parameters
-    ----------
-    polygons : tuple of (k, 2) float
-        Convex, corners counter-clockwise [m].
-    name : str
-        What it is called where it comes from a file.
+    `polygons`, tuple of (k, 2): Convex, corners counter-clockwise [m].
+    `name`: What it is called where it comes from a file.
     """
 
     polygons: tuple[Array, ...]

@@ -21,9 +21,7 @@ def problem_of_bodies(problem: Problem, owner: Owner) -> Problem:
     Masses, centres and inertias are the sums of those of their blocks, and so are loads. Joints
     are those between different bodies, and those with supports.
 
-    Parameters
-    ----------
-    owner : (blocks,) int
+    `owner`, (blocks,).
     """
     assembly = problem.assembly
     members = [np.flatnonzero(owner == each).tolist() for each in range(owner.max() + 1)]
@@ -45,9 +43,7 @@ def problem_of_bodies(problem: Problem, owner: Owner) -> Problem:
 def connected(count: int, one: ArrayLike, other: ArrayLike) -> Owner:
     """Return the group of each of so many things, of which some are connected in pairs.
 
-    Parameters
-    ----------
-    one, other : (pairs,) int
+    `one`, `other`, (pairs,).
     """
     pairs = np.asarray(one), np.asarray(other)
     graph = sparse.coo_array((np.ones(len(pairs[0])), pairs), shape=(count, count))
@@ -57,16 +53,10 @@ def connected(count: int, one: ArrayLike, other: ArrayLike) -> Owner:
 def parting(assembly: Assembly, rates: Array) -> tuple[Array, Array]:
     """Return how fast the sides of joints part.
 
-    Parameters
-    ----------
-    rates : (blocks, 3) float
-
-    Returns
-    -------
-    ways : (joints, 2, 2) float
-        Of both ends on the block after, less those on the block before.
-    turns : (joints,) float
-        Rotations likewise.
+    `rates`, (blocks, 3).
+    Returns `ways`, (joints, 2, 2): Of both ends on the block after, less those on the block
+        before.
+    Returns `turns`, (joints,): Rotations likewise.
     """
     moved, arms = np.vstack([rates, np.zeros(PLANAR)])[assembly.sides], assembly.joint_arms
     across = np.stack([-arms[..., 1], arms[..., 0]], axis=-1)
@@ -132,13 +122,9 @@ def _merged(blocks: list[Block]) -> Block:
 def carried_poses(poses: Array, owner: NDArray[np.int64], offsets: Array) -> Array:
     """Return poses of blocks that bodies carry.
 
-    Parameters
-    ----------
-    poses : (bodies, 3 or 6) float
-    owner : (blocks,) int
-        The body of each block.
-    offsets : (blocks, 2) float
-        From the centre of the body to that of the block, as built [size].
+    `poses`, (bodies, 3 or 6).
+    `owner`, (blocks,): The body of each block.
+    `offsets`, (blocks, 2): From the centre of the body to that of the block, as built [size].
     """
     moved = poses[owner]
     spatial = moved.shape[1] > PLANAR

@@ -25,22 +25,13 @@ def carrying_faces(
 ) -> Array:
     """Find the face that carries a corner.
 
-    Parameters
-    ----------
-    at : (2,) float
-        The corner [m].
-    normal : (2,) float
-        From the first body into the second.
-    bodies : two sequences of (k, 2) float
-        Polygons of both, counter-clockwise; none where they are not known.
-    size : float
-        [m]
-
-    Returns
-    -------
-    (2, 2, 2) float
-        Faces of both bodies, from the inner to the outer end: of that with the corner twice
-        the corner. Where no face lies there, the first body's is made up.
+    `at`, (2,): The corner [m].
+    `normal`, (2,): From the first body into the second.
+    `bodies`, two sequences of (k, 2): Polygons of both, counter-clockwise; none where they are
+        not known.
+    `size`: [m]
+    Returns (2, 2, 2): Faces of both bodies, from the inner to the outer end: of that with the
+        corner twice the corner. Where no face lies there, the first body's is made up.
     """
     tangent = np.array([-normal[1], normal[0]])
     best, side = OFF * size, 0
@@ -71,23 +62,13 @@ def turns(
 ) -> tuple[float, float]:
     """How far a block can turn on a corner until an edge of it lies on the face.
 
-    Parameters
-    ----------
-    at : (2,) float
-        The corner [m].
-    outward : (2,) float
-        Normal of the face, into the block with the corner.
-    clockwise : (2,) float
-        Tangent of the face from which `outward` is reached by turning clockwise.
-    polygons : sequence of (k, 2) float
-        Of the block [m].
-    size : float
-        [m]
-
-    Returns
-    -------
-    clockwise, counter-clockwise : float
-        [rad]; pi where no edge comes down, or one already lies there.
+    `at`, (2,): The corner [m].
+    `outward`, (2,): Normal of the face, into the block with the corner.
+    `clockwise`, (2,): Tangent of the face from which `outward` is reached by turning clockwise.
+    `polygons`, sequence of (k, 2): Of the block [m].
+    `size`: [m]
+    Returns `clockwise`, `counter-clockwise`: [rad]; pi where no edge comes down, or one already
+        lies there.
     """
     least, most = 0.0, math.pi
     low, high = most, least

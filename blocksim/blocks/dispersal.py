@@ -33,14 +33,9 @@ NODES = 8
 class Dispersal:
     """How a load is spread below the road.
 
-    Parameters
-    ----------
-    road : float
-        Height of the road [m].
-    slope : float
-        Width to one side over the depth, of the outermost ray.
-    even : bool
-        Whether pressure at a depth is even; else it is Boussinesq's.
+    `road`: Height of the road [m].
+    `slope`: Width to one side over the depth, of the outermost ray.
+    `even`: Whether pressure at a depth is even; else it is Boussinesq's.
     """
 
     road: float

@@ -58,30 +58,18 @@ def listed(least: int, most: int) -> Any:
 class BlockEntry(Written):
     """Entry of `blocks`: `vertices`, or `polygons` that move as one; see `Body`.
 
-    Parameters
-    ----------
-    id : int or str
-        Names the block, once in a file.
-    vertices : list of point
-        Its corners [m], in order around it; where it is not convex it is cut into parts.
-    polygons : list of list of point
-        Convex parts that move as one block [m], instead of `vertices`.
-    fixed : bool
-        Whether it is a support.
-    weight : float
-        [N]; by default density times area times depth.
-    centre : point
-        Where its weight acts [m]; by default the centroid.
-    inertia : float
-        About its centre [kg m2]; by default that of the polygon.
-    depth : float
-        Length out of the plane [m].
-    velocity : point
-        Of its centre as it is let go [m/s]; by default it begins at rest.
-    spin_deg_s : float
-        Its rotation per second then, counter-clockwise [deg/s].
-    free : bool
-        Whether nothing has to hold it, as before it lands.
+    `id`: Names the block, once in a file.
+    `vertices`: Its corners [m], in order around it; where it is not convex it is cut into
+        parts.
+    `polygons`: Convex parts that move as one block [m], instead of `vertices`.
+    `fixed`: Whether it is a support.
+    `weight`: [N]; by default density times area times depth.
+    `centre`: Where its weight acts [m]; by default the centroid.
+    `inertia`: About its centre [kg m2]; by default that of the polygon.
+    `depth`: Length out of the plane [m].
+    `velocity`: Of its centre as it is let go [m/s]; by default it begins at rest.
+    `spin_deg_s`: Its rotation per second then, counter-clockwise [deg/s].
+    `free`: Whether nothing has to hold it, as before it lands.
     """
 
     id: NewId
@@ -103,18 +91,11 @@ class BlockEntry(Written):
 class JointEntry(Written):
     """Entry of `joints`: two ends, or one and a `normal` from `a` into `b`.
 
-    Parameters
-    ----------
-    a, b : int or str
-        The two blocks.
-    ends : list of point
-        Both ends of the joint [m], or the corner that rests on a face.
-    normal : point
-        Direction from `a` into `b`, where there is one end.
-    friction : float
-        Of this joint, instead of that of the file; 0 allowed.
-    faces : pair of faces
-        Faces of `a` and `b` that meet in it, two points each [m], where they are known.
+    `a`, `b`: The two blocks.
+    `ends`: Both ends of the joint [m], or the corner that rests on a face.
+    `normal`: Direction from `a` into `b`, where there is one end.
+    `friction`: Of this joint, instead of that of the file; 0 allowed.
+    `faces`: Faces of `a` and `b` that meet in it, two points each [m], where they are known.
     """
 
     a: Id
@@ -129,20 +110,12 @@ class JointEntry(Written):
 class LoadEntry(Written):
     """Entry of `dead` or `live`: a `body` force, or a `force` on a block or along a `patch`.
 
-    Parameters
-    ----------
-    body : list of float
-        Force on every block, in units of its weight: across, up, and out of the plane.
-    blocks : list of int or str
-        Those `body` acts on; by default all that move.
-    block : int or str
-        The one a `force` acts on.
-    point : point
-        Where it acts [m]; by default the block's centre.
-    force : point
-        Across and up [N].
-    patch : point
-        From one x to another [m]: what lies uppermost there bears the force, evenly.
+    `body`: Force on every block, in units of its weight: across, up, and out of the plane.
+    `blocks`: Those `body` acts on; by default all that move.
+    `block`: The one a `force` acts on.
+    `point`: Where it acts [m]; by default the block's centre.
+    `force`: Across and up [N].
+    `patch`: From one x to another [m]: what lies uppermost there bears the force, evenly.
     """
 
     body: Annotated[list[Times], Field(min_length=2, max_length=3)] | None = None
@@ -157,16 +130,10 @@ class LoadEntry(Written):
 class MoveEntry(Written):
     """Entry of `move`: how a fixed block moves as the parameter [m] grows.
 
-    Parameters
-    ----------
-    block : int or str
-        A fixed block.
-    direction : point
-        Its way over the parameter: [1, 0] moves it to the right by as much.
-    turn_deg : float
-        Its rotation, counter-clockwise [deg/m].
-    about : point
-        What it turns about [m]; by default the middle of its corners.
+    `block`: A fixed block.
+    `direction`: Its way over the parameter: [1, 0] moves it to the right by as much.
+    `turn_deg`: Its rotation, counter-clockwise [deg/m].
+    `about`: What it turns about [m]; by default the middle of its corners.
     """
 
     block: Id
@@ -179,20 +146,12 @@ class MoveEntry(Written):
 class ShakeEntry(Written):
     """`shake`: a shape, how strong [g] and how long [s]; or accelerations [g] over time [s].
 
-    Parameters
-    ----------
-    shape : str
-        `constant`, `half-sine` or `full-sine`.
-    amplitude_g : float
-        Its largest acceleration across [g].
-    duration_s : float
-        [s]
-    times_s : list of float
-        Times of a record [s], growing.
-    accelerations_g : list of float
-        The acceleration across at each of them [g].
-    verticals_g : list of float
-        The acceleration upwards at each of them [g]; by default none.
+    `shape`: `constant`, `half-sine` or `full-sine`.
+    `amplitude_g`: Its largest acceleration across [g].
+    `duration_s`: [s]
+    `times_s`: Times of a record [s], growing.
+    `accelerations_g`: The acceleration across at each of them [g].
+    `verticals_g`: The acceleration upwards at each of them [g]; by default none.
     """
 
     shape: str | None = None
@@ -209,18 +168,11 @@ class ExpectEntry(Written):
 
     Either a `verdict` on the structure as it is, or the `value` of `over`.
 
-    Parameters
-    ----------
-    over : str
-        A parameter of `bracket`.
-    value : float
-        Where it changes from standing to falling.
-    published : str
-        That value with the digits that were printed.
-    hinges : tuple of int
-        Joints that open there, numbered from 0.
-    verdict : str
-        `stands` or `collapses`, of the structure as it is.
+    `over`: A parameter of `bracket`.
+    `value`: Where it changes from standing to falling.
+    `published`: That value with the digits that were printed.
+    `hinges`: Joints that open there, numbered from 0.
+    `verdict`: `stands` or `collapses`, of the structure as it is.
     """
 
     over: Name | None = None
@@ -253,35 +205,21 @@ class Said(Written):
 class Around(Said):
     """What a structure file says besides its blocks: friction, weight and loads.
 
-    Parameters
-    ----------
-    friction : float
-        Friction coefficient of every joint.
-    title : str
-        Said with each answer.
-    source : str
-        Where the structure and what is known of it come from.
-    density : float
-        Weight of a unit of volume [N/m3]; without it only ratios of forces have a meaning.
-    dead : list of load
-        Loads that stay as they are; by default gravity, `{"body": [0, -1]}`.
-    live : list of load
-        Loads that are multiplied by the load factor.
-    move : list of move
-        How supports move, for `--over spread`.
-    shake : shake
-        How the ground moves.
-    load : float
-        Factor on the live loads when it is asked whether it stands.
-    size : float
-        Length that displacements are compared with [m]; by default half the larger side of
+    `friction`: Friction coefficient of every joint.
+    `title`: Said with each answer.
+    `source`: Where the structure and what is known of it come from.
+    `density`: Weight of a unit of volume [N/m3]; without it only ratios of forces have a
+        meaning.
+    `dead`: Loads that stay as they are; by default gravity, `{"body": [0, -1]}`.
+    `live`: Loads that are multiplied by the load factor.
+    `move`: How supports move, for `--over spread`.
+    `shake`: How the ground moves.
+    `load`: Factor on the live loads when it is asked whether it stands.
+    `size`: Length that displacements are compared with [m]; by default half the larger side of
         the box around all blocks that move.
-    notes : list of str
-        How the file was made of another; said with each answer.
-    expect : list of expect
-        What its source says, for `validate`.
-    quick : bool
-        Whether `validate --quick` asks it.
+    `notes`: How the file was made of another; said with each answer.
+    `expect`: What its source says, for `validate`.
+    `quick`: Whether `validate --quick` asks it.
     """
 
     dead: Annotated[list[LoadEntry], Field(max_length=MOST_BLOCKS)] | None = None
@@ -301,17 +239,12 @@ AROUND = tuple(field.name for field in fields(Around))
 class StructureFile(Around):
     """A structure file of blocks as written: the keys of `Around`, and these.
 
-    Parameters
-    ----------
-    blocks : list of block
-        At least two, one of them fixed.
-    joints : list of joint
-        By default found: where faces lie on each other, and where corners rest on a face.
-    tolerance : float
-        Gaps and overlaps up to this are closed where joints are found [m], but no more than a
-        quarter of the narrower block; by default what rounding explains.
-    rounding : float
-        Step to which corners were rounded [m]; by default as their decimals say, up to twelve.
+    `blocks`: At least two, one of them fixed.
+    `joints`: By default found: where faces lie on each other, and where corners rest on a face.
+    `tolerance`: Gaps and overlaps up to this are closed where joints are found [m], but no more
+        than a quarter of the narrower block; by default what rounding explains.
+    `rounding`: Step to which corners were rounded [m]; by default as their decimals say, up to
+        twelve.
     """
 
     blocks: Annotated[list[BlockEntry], Field(min_length=2, max_length=MOST_BLOCKS)]

@@ -123,21 +123,11 @@ def as_given(
 ) -> list[tuple[Touch, float | None]]:
     """Lay given joints on the faces of their bodies.
 
-    Parameters
-    ----------
-    outlines : sequence of sequences of (k, 2) float
-        Of each body, counter-clockwise [m].
-    sizes : (bodies,) float
-        Half the larger side of each [m].
-    share : float
-        Tolerance at a joint, in units of the smaller one's size.
-    notes : list of str
-        To which it adds what was mended.
-
-    Returns
-    -------
-    list of (Touch, float or None)
-        With its own friction.
+    `outlines`, sequence of sequences of (k, 2): Of each body, counter-clockwise [m].
+    `sizes`, (bodies,): Half the larger side of each [m].
+    `share`: Tolerance at a joint, in units of the smaller one's size.
+    `notes`: To which it adds what was mended.
+    Returns list of (Touch, float or None): With its own friction.
     """
     found: list[tuple[Touch, float | None]] = []
     off, farthest = list[str](), 0.0

@@ -17,10 +17,7 @@ from blocksim.blocks.problem import Load, Problem
 class Group:
     """Blocks that touch each other, as a problem of their own on the same supports.
 
-    Parameters
-    ----------
-    blocks, joints : int arrays
-        Which of the whole problem's they are.
+    `blocks`, `joints`: Which of the whole problem's they are.
     """
 
     problem: Problem

@@ -41,14 +41,10 @@ class JointState(StrEnum):
 class JointMotion:
     """How far the two sides of each joint have parted.
 
-    Parameters
-    ----------
-    gap : (joints, 2) float
-        Opening at the inner and outer end; negative where blocks overlap.
-    slip : (joints,) float
-        Tangential displacement of `after` relative to `before`, mean of the ends.
-    turn : (joints,) float
-        Rotation of `after` relative to `before` [rad].
+    `gap`, (joints, 2): Opening at the inner and outer end; negative where blocks overlap.
+    `slip`, (joints,): Tangential displacement of `after` relative to `before`, mean of the
+        ends.
+    `turn`, (joints,): Rotation of `after` relative to `before` [rad].
     """
 
     gap: Array
@@ -59,16 +55,9 @@ class JointMotion:
 def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
     """Measure every joint at one instant.
 
-    Parameters
-    ----------
-    poses : (blocks, 3 or 6) float
-        Centres of mass x, y and rotations [rad], in units of the assembly's size; motion
-        out of the plane is left aside.
-
-    Returns
-    -------
-    JointMotion
-        Lengths in units of the assembly's size.
+    `poses`, (blocks, 3 or 6): Centres of mass x, y and rotations [rad], in units of the
+        assembly's size; motion out of the plane is left aside.
+    Returns: Lengths in units of the assembly's size.
     """
     joints, arms = assembly.joint_arrays, assembly.joint_arms
     # The support is appended as a block that stays where it is, index -1.
@@ -158,10 +147,7 @@ PARTED = 0.25
 class ObservedJoint:
     """State of one joint.
 
-    Parameters
-    ----------
-    angle : float
-        Direction of the joint from the crown, positive to the right [rad].
+    `angle`: Direction of the joint from the crown, positive to the right [rad].
     """
 
     angle: float
@@ -186,19 +172,11 @@ def classify(
     have left each other, apart or past each other, is open whatever else it did. A corner
     on a face is open or slides, and closed where it only turns.
 
-    Parameters
-    ----------
-    poses : (blocks, 3 or 6) float
-        As for `joint_motion`; best an early instant, while the motion is the collapse
-        mechanism and not yet what follows from it.
-    least : float, optional
-        A joint takes part if it turns or slips more than this, in units of the assembly's
+    `poses`, (blocks, 3 or 6): As for `joint_motion`; best an early instant, while the motion is
+        the collapse mechanism and not yet what follows from it.
+    `least`: A joint takes part if it turns or slips more than this, in units of the assembly's
         size; by default more than the share `ACTIVE` of the most active one.
-
-    Returns
-    -------
-    tuple of ObservedJoint
-        All closed where nothing moved.
+    Returns: All closed where nothing moved.
     """
     motion, joints = joint_motion(assembly, poses), assembly.joint_arrays
     turns, slips = np.abs(motion.turn), np.abs(motion.slip)

@@ -20,16 +20,10 @@ def kind_of(
 ) -> Kind[Any]:
     """Read a kind from a table.
 
-    Parameters
-    ----------
-    written : mapping
-        `kind`, and parameters.
-    kinds : mapping of str to type
-        Those there are, by name.
-    path : str
-        What leads to the table, for messages: `arch.`.
-    forces : mapping of str to float
-        Friction and density, which stand beside the parameters.
+    `written`: `kind`, and parameters.
+    `kinds`: Those there are, by name.
+    `path`: What leads to the table, for messages: `arch.`.
+    `forces`: Friction and density, which stand beside the parameters.
     """
     named = written.get("kind")
     allowed = f"one of {', '.join(kinds)}"

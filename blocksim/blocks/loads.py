@@ -47,14 +47,9 @@ def name_of(
 ) -> str:
     """Return the name of a block, which no other has and which has one outline.
 
-    Parameters
-    ----------
-    field : str
-        Where it stands.
-    known : set of str
-        Names so far; this one is added.
-    parts : sized or None
-        What it consists of where it has no `vertices`, under its key.
+    `field`: Where it stands.
+    `known`: Names so far; this one is added.
+    `parts`: What it consists of where it has no `vertices`, under its key.
     """
     name = str(block.id)
     require(name not in known, f"{field}.id", block.id, "an id that no other block has")
@@ -84,10 +79,7 @@ def sides_of(
 class LoadsOf:
     """What a load of a file comes to on the bodies of a structure.
 
-    Parameters
-    ----------
-    dimensions : int
-        Numbers of a force: 2 in the plane, 3 in space.
+    `dimensions`: Numbers of a force: 2 in the plane, 3 in space.
     """
 
     def __init__(self, bodies: Sequence[Body] | Sequence[Solid], dimensions: int = 2) -> None:
@@ -188,10 +180,7 @@ class Acts(NamedTuple):
 def acting_of(written: Around | SpatialAround, loads_of: LoadsOf, down: Array) -> Acts:
     """Return gravity and loads; a body force on all blocks is gravity.
 
-    Parameters
-    ----------
-    down : (3,) float
-        Gravity where the file says nothing of it.
+    `down`, (3,): Gravity where the file says nothing of it.
     """
     gravity, dead = down, list[Load]()
     notes: tuple[str, ...] = ()

@@ -16,10 +16,7 @@ from blocksim.blocks.problem import STANDARD_GRAVITY, Load
 def built_of(made: Made, density: float, size: float | None = None) -> Built[Assembly]:
     """Make blocks of bodies, and find their joints where those are not given.
 
-    Parameters
-    ----------
-    size : float, optional
-        Characteristic length [m].
+    `size`: Characteristic length [m].
     """
     notes: Sequence[str] = ()
     if made.joints is None:

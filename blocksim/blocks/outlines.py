@@ -23,14 +23,9 @@ POWERS = np.array([10.0**decimals for decimals in range(MOST_DECIMALS + 1)])
 class Moments:
     """Area and its moments.
 
-    Parameters
-    ----------
-    area : float
-        [m^2]; negative for clockwise corners.
-    centroid : (2,) float
-        [m]
-    polar : float
-        Second moment of area about the centroid [m^4].
+    `area`: [m^2]; negative for clockwise corners.
+    `centroid`, (2,): [m]
+    `polar`: Second moment of area about the centroid [m^4].
     """
 
     area: float
@@ -83,10 +78,7 @@ def signed_area(vertices: Array) -> float:
 def moments(polygons: Sequence[Array]) -> Moments:
     """Measure polygons that move as one (Green's theorem, exact).
 
-    Parameters
-    ----------
-    polygons : sequence of (k, 2) float
-        Corners, counter-clockwise; they do not overlap.
+    `polygons`, sequence of (k, 2): Corners, counter-clockwise; they do not overlap.
     """
     # Plain numbers: blocks have few corners, and drawings many blocks.
     corners = polygons[0].tolist()
@@ -109,18 +101,10 @@ def moments(polygons: Sequence[Array]) -> Moments:
 def mended(vertices: Array, tolerance: float) -> tuple[Array, list[str]]:
     """Leave out doubled and straight corners, and turn clockwise ones.
 
-    Parameters
-    ----------
-    vertices : (k, 2) float
-    tolerance : float
-        [m]
-
-    Returns
-    -------
-    (k, 2) float
-        May have fewer than three corners, where there were no more.
-    list of str
-        What was mended.
+    `vertices`, (k, 2).
+    `tolerance`: [m]
+    Returns (k, 2): May have fewer than three corners, where there were no more.
+    Returns: What was mended.
     """
     done: list[str] = []
     apart = np.hypot(*(vertices - before(vertices)).T) > tolerance
@@ -154,16 +138,10 @@ def is_convex(vertices: Array, tolerance: float) -> bool:
 class Extents:
     """Measures of many bodies at once, each of one polygon or several.
 
-    Parameters
-    ----------
-    wide : (bodies,) float
-        Larger side of the box around it [m].
-    across : (bodies,) float
-        Diagonal of that box [m].
-    far : (bodies,) float
-        Largest coordinate [m].
-    area : (bodies,) float
-        Of its polygons, whichever way they are drawn [m^2].
+    `wide`, (bodies,): Larger side of the box around it [m].
+    `across`, (bodies,): Diagonal of that box [m].
+    `far`, (bodies,): Largest coordinate [m].
+    `area`, (bodies,): Of its polygons, whichever way they are drawn [m^2].
     """
 
     wide: Array
@@ -193,11 +171,8 @@ def extents(bodies: Sequence[Sequence[Array]]) -> Extents:
 def are_plain(polygons: Sequence[Array], tolerance: Array) -> NDArray[np.bool_]:
     """Tell which of many polygons have nothing to be mended: convex, and counter-clockwise.
 
-    Parameters
-    ----------
-    polygons : sequence of (k, 2) float
-    tolerance : (polygons,) float
-        As of `mended` [m].
+    `polygons`, sequence of (k, 2).
+    `tolerance`, (polygons,): As of `mended` [m].
     """
     points, first, after = _around(polygons)
     count = np.diff(np.append(first, len(points)))
@@ -227,12 +202,9 @@ def joined(pieces: Sequence[Array], tolerance: float) -> tuple[Array, ...]:
 
     Greedy, after Hertel and Mehlhorn (1983): at most four times as many parts as needed.
 
-    Parameters
-    ----------
-    pieces : sequence of (k, 2) float
-        Convex, counter-clockwise, sides shared whole: a triangulation.
-    tolerance : float
-        How far a part may be from convex [m].
+    `pieces`, sequence of (k, 2): Convex, counter-clockwise, sides shared whole: a
+        triangulation.
+    `tolerance`: How far a part may be from convex [m].
     """
     parts = [[(float(x), float(y)) for x, y in piece] for piece in pieces]
     tried = 0

@@ -25,11 +25,9 @@ LEAST = 1e-12
 class Profile:
     """What lies uppermost, seen from above: straight pieces from left to right.
 
-    Parameters
-    ----------
-    ends : (pieces, 2, 2) float
-        Left and right end of each [m]. Where there is no body there is no piece.
-    body : (pieces,) int
+    `ends`, (pieces, 2, 2): Left and right end of each [m]. Where there is no body there is no
+        piece.
+    `body`, (pieces,).
     """
 
     ends: Array
@@ -39,10 +37,7 @@ class Profile:
     def of(cls, bodies: Sequence[Sequence[Array]]) -> Profile:
         """Find the profile of bodies that do not overlap.
 
-        Parameters
-        ----------
-        bodies : sequence of sequences of (k, 2) float
-            Convex polygons of each body [m].
+        `bodies`, sequence of sequences of (k, 2): Convex polygons of each body [m].
         """
         starts: list[Array] = []
         owners: list[int] = []
@@ -129,17 +124,10 @@ class Profile:
         presses downwards on it. Parts that meet no body go to the ground: shares may sum to
         less than 1.
 
-        Parameters
-        ----------
-        x : float
-            On the road [m].
-
-        Returns
-        -------
-        body : (parts,) int
-        share : (parts,) float
-        point : (parts, 2) float
-            [m]
+        `x`: On the road [m].
+        Returns `body`, (parts,).
+        Returns `share`, (parts,).
+        Returns `point`, (parts, 2): [m]
         """
         share, point = self.spread(np.array([x]), dispersal)
         links = np.flatnonzero(share[0])
@@ -148,15 +136,9 @@ class Profile:
     def spread(self, places: Array, dispersal: Dispersal) -> tuple[Array, Array]:
         """Find what each link of the chain bears of loads on the road at places [m].
 
-        Parameters
-        ----------
-        places : (k,) float
-
-        Returns
-        -------
-        share : (k, links) float
-        point : (k, links, 2) float
-            [m]; of no meaning where the share is 0.
+        `places`, (k,).
+        Returns `share`, (k, links).
+        Returns `point`, (k, links, 2): [m]; of no meaning where the share is 0.
         """
         chain, most = self.ends.reshape(-1, 2), dispersal.slope
         depth = dispersal.road - chain[:, 1]

@@ -91,26 +91,14 @@ def assembly_of_bodies(
 ) -> tuple[Assembly, tuple[str, ...]]:
     """Build an assembly, and say what was mended.
 
-    Parameters
-    ----------
-    joints : sequence of GivenJoint, optional
-        Taken as they are; by default found (see `touching.touches`).
-    density : float
-        Weight per volume [N/m^3] of bodies without a weight.
-    size : float, optional
-        Characteristic length [m]; by default half the larger extent of what can move.
-    tolerance : float, optional
-        Gaps and overlaps up to this are closed [m]; by default what rounding explains.
-    rounding : float, optional
-        Step to which coordinates were rounded [m]; by default as their decimals say.
-
-    Returns
-    -------
-    Assembly
-        Blocks that move in the order of the bodies. Found joints are ordered by `before`
+    `joints`: Taken as they are; by default found (see `touching.touches`).
+    `density`: Weight per volume [N/m^3] of bodies without a weight.
+    `size`: Characteristic length [m]; by default half the larger extent of what can move.
+    `tolerance`: Gaps and overlaps up to this are closed [m]; by default what rounding explains.
+    `rounding`: Step to which coordinates were rounded [m]; by default as their decimals say.
+    Returns: Blocks that move in the order of the bodies. Found joints are ordered by `before`
         and `after`, those with supports first, `before` them.
-    tuple of str
-        What was mended, taken or nearly found.
+    Returns: What was mended, taken or nearly found.
     """
     (raw, size), notes = _sound(bodies, size), list[str]()
     if rounding is None:

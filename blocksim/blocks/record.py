@@ -69,10 +69,7 @@ def from_record(
 ) -> Problem[Any]:
     """Return the problem that `to_record` was given.
 
-    Parameters
-    ----------
-    maker_of : callable, optional
-        Parameters and name of a kind to the maker; by default the problem has none.
+    `maker_of`: Parameters and name of a kind to the maker; by default the problem has none.
     """
     given = dict(record)
     built = dict(given.pop("assembly"))
@@ -224,12 +221,8 @@ def _require_sound(
 ) -> None:
     """Raise `ValueError` where a stranger's record cannot be of blocks.
 
-    Parameters
-    ----------
-    numbers : sequence of float
-        What has to be above 0.
-    points : sequence of array
-        All that is somewhere.
+    `numbers`: What has to be above 0.
+    `points`: All that is somewhere.
     """
     count, supports = len(assembly.blocks), len(assembly.supports)
     sound = count > 0 and all(math.isfinite(each) and each > 0 for each in numbers)

@@ -61,19 +61,10 @@ def overlaps(
 ) -> list[tuple[int, int, float]]:
     """Find bodies that overlap by more than `slack.close`, in order; not more than asked for.
 
-    Parameters
-    ----------
-    parts : sequence of sequences of (k, 2) float
-        Convex ones of each body.
-    fixed : (bodies,) bool
-        Those may overlap each other.
-    most : int
-        Stop there: the first is enough to refuse a drawing.
-
-    Returns
-    -------
-    list of (one, other, depth)
-        Twice the common area over its perimeter [m].
+    `parts`, sequence of sequences of (k, 2): Convex ones of each body.
+    `fixed`, (bodies,): Those may overlap each other.
+    `most`: Stop there: the first is enough to refuse a drawing.
+    Returns list of (one, other, depth): Twice the common area over its perimeter [m].
     """
     owner = np.repeat(np.arange(len(parts)), [len(each) for each in parts])
     each_one = [part for each in parts for part in each]
@@ -105,10 +96,7 @@ def overlaps(
 def near_faces(faces: Faces, fixed: NDArray[np.bool_], slack: Slack) -> NDArray[np.int64]:
     """Find pairs of faces of different bodies, not both fixed, within `slack.near`.
 
-    Returns
-    -------
-    (pairs, 2) int
-        Each pair once.
+    Returns (pairs, 2): Each pair once.
     """
     lines: Any = shapely.linestrings(np.stack([faces.start, faces.end], axis=1))
     tree, pairs = shapely.STRtree(lines), list[NDArray[np.int64]]()

@@ -36,20 +36,11 @@ def on_road(
 ) -> tuple[Load, ...]:
     """Return the loads that a weight on the road comes to.
 
-    Parameters
-    ----------
-    low, high : float
-        Where it stands along x, evenly [m]; at one point where both are equal.
-    field : str
-        What to call it in messages.
-    dispersal : Dispersal, optional
-        How fill spreads it; by default it goes straight down.
-
-    Returns
-    -------
-    tuple of Load
-        A weight on a joint is shared in halves by the blocks on its two sides. What fill hands
-        to supports, or past the blocks, is left out.
+    `low`, `high`: Where it stands along x, evenly [m]; at one point where both are equal.
+    `field`: What to call it in messages.
+    `dispersal`: How fill spreads it; by default it goes straight down.
+    Returns: A weight on a joint is shared in halves by the blocks on its two sides. What fill
+        hands to supports, or past the blocks, is left out.
     """
     profile, count = profile_of(assembly), len(assembly.blocks)
     found = profile.at(low) if low == high else profile.along(low, high)
@@ -119,12 +110,9 @@ def with_road(
     Where it has a maker they stay where they are as its parameters change, on whatever blocks
     are uppermost there then.
 
-    Parameters
-    ----------
-    loads : sequence of (float, float, float)
-        From one x to another [m], the same at a point, and the weight [N].
-    fields : sequence of str
-        What to call each in messages.
+    `loads`, sequence of (float, float, float): From one x to another [m], the same at a point,
+        and the weight [N].
+    `fields`: What to call each in messages.
     """
     names = fields or ["road"] * len(loads)
     live = [
@@ -154,14 +142,9 @@ def fill_density(problem: Problem) -> float:
 def with_fill(problem: Problem, height: float, share: float) -> Problem:
     """Return a problem of an arch or of arches on piers with fill above them.
 
-    Parameters
-    ----------
-    problem : Problem
-        With a maker.
-    height : float
-        Of the fill over the highest point of the extrados [m].
-    share : float
-        Density of the fill over that of the blocks.
+    `problem`: With a maker.
+    `height`: Of the fill over the highest point of the extrados [m].
+    `share`: Density of the fill over that of the blocks.
     """
     maker: Any = problem.maker
     require(takes_fill(problem), "fill", height, "left out: it is for arches and portals")
@@ -231,12 +214,8 @@ def _below(problem: Problem) -> tuple[Profile, Array, float]:
 def with_dispersal(problem: Problem, words: str) -> Problem:
     """Return a problem whose fill spreads loads on the road.
 
-    Parameters
-    ----------
-    problem : Problem
-        With fill.
-    words : str
-        As of `Dispersal.of`.
+    `problem`: With fill.
+    `words`: As of `Dispersal.of`.
     """
     road = road_of(problem)
     if road is None:

@@ -20,12 +20,8 @@ Column = Sequence[Any] | NDArray[np.float64]
 class Rows(Sequence[Thing]):
     """A table, a row of which makes a thing.
 
-    Parameters
-    ----------
-    kind : type
-        A dataclass.
-    **columns : sequence or array
-        Its parameters, each for all things; those that are left out have their defaults.
+    `kind`: A dataclass.
+    `columns`: Its parameters, each for all things; those that are left out have their defaults.
     """
 
     def __init__(self, kind: Callable[..., Thing], **columns: Column) -> None:

@@ -50,18 +50,12 @@ class Shaking:
 
     It begins at rest, as the blocks are let go. After it the ground keeps its velocity.
 
-    Parameters
-    ----------
-    shape : str
-        Of `SHAPES`, or `table`.
-    amplitude : float
-        Largest acceleration across [g]; of ground that goes up and down only, upwards.
-    duration : float
-        [s]
-    table : (rows, 3) float
-        Times as shares of the duration, from 0 to 1, and accelerations across and upwards in
-        units of the amplitude, with straight lines between; empty for other shapes, which
-        are across.
+    `shape`: Of `SHAPES`, or `table`.
+    `amplitude`: Largest acceleration across [g]; of ground that goes up and down only, upwards.
+    `duration`: [s]
+    `table`, (rows, 3): Times as shares of the duration, from 0 to 1, and accelerations across
+        and upwards in units of the amplitude, with straight lines between; empty for other
+        shapes, which are across.
     """
 
     shape: str
@@ -143,14 +137,9 @@ class Shaking:
 def table_of(times: Array, accelerations: Array, upwards: Array | None = None) -> Shaking:
     """Make one of accelerations that are given over time.
 
-    Parameters
-    ----------
-    times : (rows,) float
-        [s]; each after the one before. The first is when the blocks are let go.
-    accelerations : (rows,) float
-        Across [g].
-    upwards : (rows,) float, optional
-        [g]; by default none.
+    `times`, (rows,): [s]; each after the one before. The first is when the blocks are let go.
+    `accelerations`, (rows,): Across [g].
+    `upwards`, (rows,): [g]; by default none.
     """
     enough = 2 <= len(times) <= MOST_ROWS
     require(enough, "times_s", f"{len(times)} rows", f"2 to {MOST_ROWS} rows")
@@ -232,10 +221,7 @@ def shaking_record(shaking: Shaking) -> dict[str, Any]:
 def read_table(path: AnyPath) -> Shaking:
     """Read accelerations of the ground from a CSV file.
 
-    Parameters
-    ----------
-    path : Path or str
-        With a first line `time_s,acceleration_g`, or `time_s,acceleration_g,vertical_g`.
+    `path`: With a first line `time_s,acceleration_g`, or `time_s,acceleration_g,vertical_g`.
     """
     read = read_file(path, "shake", "an existing .csv file", LARGEST_FILE)
     where = os.fspath(path)

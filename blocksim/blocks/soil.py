@@ -38,23 +38,18 @@ NOTHING = 1e-12
 class Soil:
     """What fill is made of, and how it presses from the side.
 
-    Parameters
-    ----------
-    unit_weight : float
-        Weight per volume where nothing else is said [N/m^3].
-    height : float or None
-        Of the road over the highest point of what lies uppermost [m]; None where a maker
+    `unit_weight`: Weight per volume where nothing else is said [N/m^3].
+    `height`: Of the road over the highest point of what lies uppermost [m]; None where a maker
         knows its fill, and weighs it.
-    regions : tuple of (float, float, float)
-        From one x to another [m], and another weight per volume there; later ones count.
-    layers : tuple of (float, float)
-        From the road downwards, thickness [m] and weight per volume.
-    backing : (float, float) or None
-        Its height over the lowest point of what lies uppermost [m], and its weight per volume.
-    pressure : (float, float)
-        From the side over the weight above, left and right; 0 for none.
-    passive : (float, float)
-        The most that soil bears from the side, over the same; 0 where that is not counted on.
+    `regions`, tuple of (float, float, float): From one x to another [m], and another weight per
+        volume there; later ones count.
+    `layers`, tuple of (float, float): From the road downwards, thickness [m] and weight per
+        volume.
+    `backing`, (float, float): Its height over the lowest point of what lies uppermost [m], and
+        its weight per volume.
+    `pressure`, (float, float): From the side over the weight above, left and right; 0 for none.
+    `passive`, (float, float): The most that soil bears from the side, over the same; 0 where
+        that is not counted on.
     """
 
     unit_weight: float
@@ -104,12 +99,8 @@ class Soil:
     def loads(self, profile: Profile, depths: Array, road: float) -> tuple[Load, ...]:
         """Return what soil does to blocks besides the weight that a maker counts.
 
-        Parameters
-        ----------
-        depths : (blocks,) float
-            Of those that move, which come first [m].
-        road : float
-            Height of the road [m].
+        `depths`, (blocks,): Of those that move, which come first [m].
+        `road`: Height of the road [m].
         """
         found: dict[int, list[Array]] = {}
         for body, parts in self._parts(profile, depths, road, self.pressure):
@@ -226,12 +217,8 @@ def _loads(known: list[tuple[int, Array]]) -> tuple[Load, ...]:
 def coefficients(words: str, angle: float | None) -> Sides:
     """Read how soil presses from the side: at-rest, active or a number, or two of them.
 
-    Parameters
-    ----------
-    words : str
-        Of the left and of the right, divided by a comma; one for both.
-    angle : float or None
-        Of friction of the soil [rad].
+    `words`: Of the left and of the right, divided by a comma; one for both.
+    `angle`: Of friction of the soil [rad].
 
     Examples
     --------

@@ -118,12 +118,8 @@ def problem_of(
 ) -> Problem:
     """Make a problem of an assembly and of what a file says besides.
 
-    Parameters
-    ----------
-    bodies : sequence of Body
-        Of which the assembly was made, each with a name of its own.
-    found : sequence of str
-        Notes on how it was made.
+    `bodies`: Of which the assembly was made, each with a name of its own.
+    `found`: Notes on how it was made.
     """
     acts = acting_of(written, LoadsOf(bodies), np.array(Assembly.down))
     mu = written.friction

@@ -23,11 +23,8 @@ Index = NDArray[np.int64]
 class Faces(NamedTuple):
     """Sides of polygons, the body to their left.
 
-    Parameters
-    ----------
-    start, end : (faces, 2) float
-        [m]
-    body : (faces,) int
+    `start`, `end`, (faces, 2): [m]
+    `body`, (faces,).
     """
 
     start: Array
@@ -46,12 +43,8 @@ class Slack(NamedTuple):
 
     At a joint the smaller one of its two bodies counts. Bodies that are fixed have inf.
 
-    Parameters
-    ----------
-    exact : (bodies,) float
-        As drawn: a joint is where its faces are.
-    close : (bodies,) float
-        Up to this gaps and overlaps are closed, at least `exact`.
+    `exact`, (bodies,): As drawn: a joint is where its faces are.
+    `close`, (bodies,): Up to this gaps and overlaps are closed, at least `exact`.
     """
 
     exact: Array
@@ -70,18 +63,12 @@ class Slack(NamedTuple):
 class Touch(NamedTuple):
     """Two bodies that touch: along a stretch, or one with a corner.
 
-    Parameters
-    ----------
-    one, other : int
-        Bodies.
-    ends : (2, 2) float
-        Along the face of `one`, the body to the left; both the same for a corner [m].
-    faces : (2, 2, 2) float
-        Faces of `one` and of `other`, in the same direction [m].
-    normal : (2,) float or None
-        From `one` into `other`, for a corner.
-    gap : float
-        How far apart they are drawn, below 0 where they overlap [m]; 0 where it is exact.
+    `one`, `other`: Bodies.
+    `ends`, (2, 2): Along the face of `one`, the body to the left; both the same for a corner
+        [m].
+    `faces`, (2, 2, 2): Faces of `one` and of `other`, in the same direction [m].
+    `normal`, (2,): From `one` into `other`, for a corner.
+    `gap`: How far apart they are drawn, below 0 where they overlap [m]; 0 where it is exact.
     """
 
     one: int
@@ -116,15 +103,8 @@ def touches(
     the face's ends, is a contact, unless the same two bodies have a joint there. Corner on
     corner is none.
 
-    Parameters
-    ----------
-    pairs : (pairs, 2) int
-        Faces of different bodies, each pair once.
-
-    Returns
-    -------
-    list of (int, int)
-        Bodies that nearly touch.
+    `pairs`, (pairs, 2): Faces of different bodies, each pair once.
+    Returns list of (int, int): Bodies that nearly touch.
     """
     found, near = _face_on_face(faces, pairs, slack)
     many = len(slack.exact)

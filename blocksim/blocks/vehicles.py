@@ -22,10 +22,8 @@ HEAVIEST = 1e6
 class Vehicle:
     """Axles that keep their distances.
 
-    Parameters
-    ----------
-    axles : tuple of (float, float)
-        Place of each along the road, from an origin of the vehicle [m], and weight [N].
+    `axles`, tuple of (float, float): Place of each along the road, from an origin of the
+        vehicle [m], and weight [N].
     """
 
     axles: tuple[tuple[float, float], ...]
@@ -79,11 +77,8 @@ def shipped_vehicles() -> dict[str, Path]:
 def vehicle_of(said: str) -> Vehicle:
     """Return a vehicle by its name, from a file, or as axles.
 
-    Parameters
-    ----------
-    said : str
-        A shipped name; a .toml file with `axles`, a list of places [m] and weights [kN], and a
-        `title` and `source` if wanted; or weights and places, as "10@0,10@1.2".
+    `said`: A shipped name; a .toml file with `axles`, a list of places [m] and weights [kN],
+        and a `title` and `source` if wanted; or weights and places, as "10@0,10@1.2".
 
     Examples
     --------

@@ -74,12 +74,8 @@ KINDS: dict[object, click.ParamType[Any]] = {
 class Option(Field):
     """What is said of an option, beside its type and default.
 
-    Parameters
-    ----------
-    name : str
-        With its dashes, where it is not that of the parameter; `--yes/--no` of a flag.
-    folder : bool
-        Whether a path is that of a folder.
+    `name`: With its dashes, where it is not that of the parameter; `--yes/--no` of a flag.
+    `folder`: Whether a path is that of a folder.
     """
 
     name: str = ""
@@ -134,14 +130,10 @@ class Command(click.Command):
 def command_of(function: Callable[..., None], name: str | None = None) -> Command:
     """Make a command of a function.
 
-    Parameters
-    ----------
-    function : callable
-        Each parameter is annotated with its type and an `Option` or an `Argument`; without
-        either it is an option, an argument if it has no default. Those whose type is a
+    `function`: Each parameter is annotated with its type and an `Option` or an `Argument`;
+        without either it is an option, an argument if it has no default. Those whose type is a
         dataclass get one, whose fields are options below its `heading`.
-    name : str, optional
-        Of the command.
+    `name`: Of the command.
     """
     groups: dict[str, type[Any]] = {}
     parameters: list[click.Parameter] = []

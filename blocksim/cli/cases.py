@@ -54,11 +54,8 @@ def asked_of_cases(
 ) -> Cases:  # fmt: skip
     """Read the cases of a structure from a .toml file, and answer them.
 
-    Parameters
-    ----------
-    scene, given, loading, spatial
-        The structure, and what acts on it in every case that says nothing else; as of
-        `anything_asked`.
+    `scene`, `given`, `loading`, `spatial`: The structure, and what acts on it in every case
+        that says nothing else; as of `anything_asked`.
     """
     allowed = "left out with many structures: cases are of one"
     require(scene is None or not is_many(scene), "--cases", str(path), allowed)

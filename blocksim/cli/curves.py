@@ -78,10 +78,7 @@ def cross(
 ) -> None:
     """Find the worst place of a vehicle, and tell it.
 
-    Parameters
-    ----------
-    usual : mapping of str to bool
-        Options of other searches, and whether they were left out or say nothing else.
+    `usual`: Options of other searches, and whether they were left out or say nothing else.
     """
     for option, ok in usual.items():
         allowed = "left out beside --vehicle: limit analysis searches over its places"

@@ -21,12 +21,8 @@ def question(
 ) -> Scenario:
     """Merge a scenario, where there is one, with the options that override it.
 
-    Parameters
-    ----------
-    thick : bool
-        Whether a thickness has to be given where there is no scenario.
-    needed : object
-        Other options that have to be given, by name.
+    `thick`: Whether a thickness has to be given where there is no scenario.
+    `needed`: Other options that have to be given, by name.
     """
     if scene is None:
         mu = given.mu if given.friction_angle is None else given.friction_angle

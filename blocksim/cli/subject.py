@@ -71,14 +71,9 @@ def anything_asked(
 ) -> Problem[Any]:
     """Return what is asked about, in the plane or in space, and what the options put on it.
 
-    Parameters
-    ----------
-    scene, given, thick, needed
-        As of `question`.
-    spatial : bool
-        Whether blocks of the plane are asked as prisms.
-    sought : bool
-        Whether the thickness of an arch is what is sought.
+    `scene`, `given`, `thick`, `needed`: As of `question`.
+    `spatial`: Whether blocks of the plane are asked as prisms.
+    `sought`: Whether the thickness of an arch is what is sought.
     """
     if scene is not None and is_structure(scene):
         from blocksim.cli.structures import structure

@@ -28,16 +28,10 @@ class Range:
 
     Within them no product of several quantities is too large or too small for a number.
 
-    Parameters
-    ----------
-    low, high : float
-        Both allowed, an infinite end is not.
-    above : bool
-        Whether the low end is not allowed.
-    whole : bool
-        Whether it is a whole number.
-    infinite : bool
-        Whether it may be infinite besides; files say "inf".
+    `low`, `high`: Both allowed, an infinite end is not.
+    `above`: Whether the low end is not allowed.
+    `whole`: Whether it is a whole number.
+    `infinite`: Whether it may be infinite besides; files say "inf".
     """
 
     low: float

@@ -32,26 +32,16 @@ def solved_cones(
 ) -> Any:
     """Minimise ``x Q x / 2 + c x`` with ``b - A x`` in cones.
 
-    Parameters
-    ----------
-    quadratic : (n, n) sparse
-    cost : (n,) float
-    matrix : (rows, n) sparse
-    right : (rows,) float
-    cones : sequence of Cone
-        In the order of the rows.
-    finest : float
-        Gap and residuals at which it may end.
-    scaled : bool
-        Whether the solver scales the programme first.
-    refined : bool
-        Whether equations are solved to round-off; else a tenth as finely as `finest`, which
-        takes half the time.
-
-    Returns
-    -------
-    object
-        Clarabel's: `x`, the prices `z` of the rows, `status`, values and residuals.
+    `quadratic`, (n, n) sparse.
+    `cost`, (n,).
+    `matrix`, (rows, n) sparse.
+    `right`, (rows,).
+    `cones`: In the order of the rows.
+    `finest`: Gap and residuals at which it may end.
+    `scaled`: Whether the solver scales the programme first.
+    `refined`: Whether equations are solved to round-off; else a tenth as finely as `finest`,
+        which takes half the time.
+    Returns: Clarabel's: `x`, the prices `z` of the rows, `status`, values and residuals.
     """
     settings = clarabel.DefaultSettings()
     settings.verbose = False

@@ -45,12 +45,8 @@ def in_line(text: str, most: int = LONGEST) -> str:
 def perhaps(name: str, known: Iterable[str]) -> str:
     """Ask whether a known name was meant, to be added to what is allowed; "" if none is near.
 
-    Parameters
-    ----------
-    name : str
-        As it was given.
-    known : iterable of str
-        Of those it may be itself, of which nothing is asked.
+    `name`: As it was given.
+    `known`: Of those it may be itself, of which nothing is asked.
     """
     from difflib import get_close_matches
 

@@ -14,20 +14,13 @@ Stands = Literal["low", "high"]
 class Field:
     """A value that may be given: what it is, and which values it may have.
 
-    Parameters
-    ----------
-    about : str
-        In a line.
-    range : Range or None
-        Of a number, with its unit.
-    choices : tuple of str
-        Words, where it is one of them.
-    optional : bool
-        Whether it may be left out for nothing.
-    nested : {"", "table", "tables"}
-        Whether it is a table of an arch, or a list of tables.
-    stands : {"low", "high"} or None
-        On which side structures stand, where it may be bracketed over.
+    `about`: In a line.
+    `range`: Of a number, with its unit.
+    `choices`: Words, where it is one of them.
+    `optional`: Whether it may be left out for nothing.
+    `nested`, {"", "table", "tables"}: Whether it is a table of an arch, or a list of tables.
+    `stands`, {"low", "high"} or None: On which side structures stand, where it may be bracketed
+        over.
     """
 
     about: str = ""

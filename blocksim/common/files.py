@@ -40,10 +40,7 @@ WRONG_NAME = {EEXIST, EINVAL, EISDIR, ELOOP, ENAMETOOLONG, ENOENT, ENOTDIR}
 def shipped_files(pattern: str) -> dict[str, Path]:
     """Return files of `scenarios/` that come with blocksim, by name.
 
-    Parameters
-    ----------
-    pattern : str
-        As of a path below that folder: `*.toml`.
+    `pattern`: As of a path below that folder: `*.toml`.
     """
     # In a wheel they are package data, in a checkout they are beside the package.
     inside = Path(str(files("blocksim") / "_scenarios"))
@@ -79,17 +76,9 @@ def write_whole(path: AnyPath, write: Callable[[BinaryIO], object]) -> None:
     name of its own, which nobody can know before: of two writers of one file either is whole,
     and a link of that name is not followed but replaced. What a kill leaves ends in `.part`.
 
-    Parameters
-    ----------
-    write : callable
-        Writes to the open binary file it is given.
-
-    Raises
-    ------
-    InputError
-        If there can be no file of that name.
-    MachineError
-        If the system cannot write it.
+    `write`: Writes to the open binary file it is given.
+    Raises `InputError`: If there can be no file of that name.
+    Raises `MachineError`: If the system cannot write it.
 
     Examples
     --------
@@ -162,23 +151,12 @@ def refused(field: str, path: AnyPath, allowed: str, error: OSError) -> Blocksim
 def opened(path: AnyPath, field: str, allowed: str, largest: int) -> Generator[BinaryIO]:
     """Open a file of a stranger: a regular one, of a bounded size, without waiting for it.
 
-    Parameters
-    ----------
-    path : str or path
-        A text that ends in a slash is no file.
-    field : str
-        What the file is, for what is said of it.
-    allowed : str
-        What would have been accepted, as a phrase.
-    largest : int
-        Bytes; a larger file is refused.
-
-    Raises
-    ------
-    InputError
-        If it is missing, no regular file, or too large.
-    MachineError
-        If the system cannot open or read it.
+    `path`: A text that ends in a slash is no file.
+    `field`: What the file is, for what is said of it.
+    `allowed`: What would have been accepted, as a phrase.
+    `largest`: Bytes; a larger file is refused.
+    Raises `InputError`: If it is missing, no regular file, or too large.
+    Raises `MachineError`: If the system cannot open or read it.
     """
     said = os.fspath(path)
     try:
@@ -235,11 +213,8 @@ _DEEP_KEY = re.compile(
 def toml_of(text: bytes) -> dict[str, Any]:
     """Return what a TOML file says.
 
-    Raises
-    ------
-    ValueError
-        In one line, if it is no TOML, no UTF-8, nested too deeply, or says a number beyond
-        all bounds.
+    Raises `ValueError`: In one line, if it is no TOML, no UTF-8, nested too deeply, or says a
+        number beyond all bounds.
     """
     # Commands that read no file need not wait for it.
     import tomllib
@@ -258,10 +233,7 @@ def toml_of(text: bytes) -> dict[str, Any]:
 def json_of(text: bytes, pairs: Callable[[list[tuple[str, Any]]], Any] | None = None) -> Any:
     """Return what a JSON file says; `pairs` makes something of a table.
 
-    Raises
-    ------
-    ValueError
-        As `toml_of`.
+    Raises `ValueError`: As `toml_of`.
     """
     with _in_words():
         return json.loads(text.decode("utf-8-sig"), object_pairs_hook=pairs, parse_int=_whole)
@@ -315,12 +287,8 @@ def _sync_folder(path: Path) -> None:
 def require_place(path: Path) -> None:
     """Check that a file can be written, before the work that is to fill it.
 
-    Raises
-    ------
-    InputError
-        If there can be no file of that name.
-    MachineError
-        If the system cannot write it.
+    Raises `InputError`: If there can be no file of that name.
+    Raises `MachineError`: If the system cannot write it.
     """
     with _writable(path):
         _require_plain(path)
@@ -330,12 +298,8 @@ def require_place(path: Path) -> None:
 def make_folder(path: AnyPath) -> None:
     """Create a folder for results, and check that they can be written.
 
-    Raises
-    ------
-    InputError
-        If there can be no folder of that name.
-    MachineError
-        If the system cannot create or write it.
+    Raises `InputError`: If there can be no folder of that name.
+    Raises `MachineError`: If the system cannot create or write it.
     """
     path = Path(path)
     with _writable(path, "a writable folder"):

@@ -22,15 +22,9 @@ Makers = Mapping[str, Callable[[], Thing]]
 class Later(Mapping[str, Thing]):
     """Things by name, each made when it is first asked for; their names are known before.
 
-    Parameters
-    ----------
-    beyond : mapping, optional
-        Further things, asked only for names that `makers` has not, and where all are listed.
-
-    Attributes
-    ----------
-    shipped : tuple of str
-        Names of `makers` that are known from the start.
+    `beyond`: Further things, asked only for names that `makers` has not, and where all are
+        listed.
+    `shipped`: Names of `makers` that are known from the start.
     """
 
     def __init__(
@@ -77,10 +71,7 @@ class Installed(Later[Thing]):
     Packages are looked through when a name is first asked for, which takes tens of
     milliseconds; what they offer is loaded when it is asked for itself.
 
-    Parameters
-    ----------
-    group : str
-        As `blocksim.engines`.
+    `group`: As `blocksim.engines`.
     """
 
     def __init__(self, group: str) -> None:
@@ -96,12 +87,8 @@ class Installed(Later[Thing]):
 def loaded(what: str, place: str) -> Any:
     """Return what a module has at a place.
 
-    Parameters
-    ----------
-    what : str
-        What is looked for, as errors name it.
-    place : str
-        ``module:NAME``.
+    `what`: What is looked for, as errors name it.
+    `place`: ``module:NAME``.
     """
     module, _, name = place.partition(":")
     try:
@@ -124,14 +111,9 @@ def loaded_here(what: str, place: str) -> Any:
 def require_library(library: str, part: str, extra: str) -> None:
     """Raise `MissingPart` unless a library of an extra of blocksim is installed.
 
-    Parameters
-    ----------
-    library : str
-        As it is imported.
-    part : str
-        What needs it.
-    extra : str
-        What brings it.
+    `library`: As it is imported.
+    `part`: What needs it.
+    `extra`: What brings it.
     """
     if find_spec(library) is None:
         raise MissingPart(part, f"pip install 'blocksim[{extra}]'")
@@ -143,10 +125,7 @@ class Library:
     Engines can be listed where their libraries are not installed, and nobody waits for what
     is not needed.
 
-    Parameters
-    ----------
-    quiet : bool
-        Whether to keep what it writes to standard error on import from the terminal.
+    `quiet`: Whether to keep what it writes to standard error on import from the terminal.
     """
 
     def __init__(self, name: str, *, quiet: bool = False) -> None:

@@ -20,12 +20,8 @@ def write_sheet(file: BinaryIO, names: Sequence[str], rows: Iterable[Sequence[ob
     A missing value is an empty cell. Text is made printable; one that a spreadsheet would take
     for a formula gets an apostrophe before it. Numbers stay numbers.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Of the columns.
-    rows : iterable of sequence
-        Cells in the order of the columns.
+    `names`: Of the columns.
+    `rows`: Cells in the order of the columns.
 
     Examples
     --------

@@ -47,14 +47,9 @@ def as_said(
 ) -> Said:
     """Check what a table of a file says.
 
-    Parameters
-    ----------
-    schema : type
-        A dataclass.
-    where : str, optional
-        The file.
-    renamed : mapping of str to str
-        Keys that were called otherwise, and their names now.
+    `schema`: A dataclass.
+    `where`: The file.
+    `renamed`: Keys that were called otherwise, and their names now.
     """
     try:
         return _adapter(schema).validate_python(table)

@@ -9,10 +9,7 @@ from unicodedata import category
 def counted(number: int, noun: str) -> str:
     """Return a number with its noun: 1 block, 2 blocks.
 
-    Parameters
-    ----------
-    noun : str
-        In the singular; its plural ends in s.
+    `noun`: In the singular; its plural ends in s.
     """
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
@@ -29,11 +26,8 @@ def printable(text: str) -> str:
     Titles, names of blocks and names of files may hold what clears a screen, writes the
     clipboard, turns the direction of reading or begins a line of its own.
 
-    Returns
-    -------
-    str
-        Of printable characters and spaces of any width: other white space is a space, anything
-        else a question mark.
+    Returns: Of printable characters and spaces of any width: other white space is a space,
+        anything else a question mark.
 
     Examples
     --------

@@ -56,13 +56,9 @@ NAMES = ENGINES.shipped
 def engine_named(name: str, field: str = "method") -> Engine:
     """Return an engine by its name or its place, whether it can run here or not.
 
-    Parameters
-    ----------
-    name : str
-        A key of `ENGINES`, or ``module:ENGINE``, where modules are looked for in the working
-        directory, too.
-    field : str
-        What errors call it.
+    `name`: A key of `ENGINES`, or ``module:ENGINE``, where modules are looked for in the
+        working directory, too.
+    `field`: What errors call it.
     """
     if name in ENGINES:
         return ENGINES[name]
@@ -74,10 +70,7 @@ def engine_named(name: str, field: str = "method") -> Engine:
 def make_known(engine: object, place: str) -> Engine:
     """Make an engine known by its name, to all questions of this process.
 
-    Parameters
-    ----------
-    place : str
-        Where it was found, as errors name it.
+    `place`: Where it was found, as errors name it.
     """
     if not isinstance(engine, Engine):
         raise InputError("method", place, "an Engine of blocksim.engines.base")

@@ -30,12 +30,8 @@ LEAST_TURN = 1e-2
 class Frame:
     """Where the plane of the assembly lies in the engine's space.
 
-    Parameters
-    ----------
-    turn : float, optional
-        About the vertical [rad].
-    origin : tuple of float, optional
-        Place of the assembly's origin [size].
+    `turn`: About the vertical [rad].
+    `origin`: Place of the assembly's origin [size].
     """
 
     def __init__(
@@ -63,10 +59,7 @@ class Frame:
     def motions(self, linear: Array, angular: Array) -> Array:
         """Return velocities in the assembly's columns, shape (blocks, 6).
 
-        Parameters
-        ----------
-        linear, angular : (blocks, 3) float
-            In the engine's space.
+        `linear`, `angular`, (blocks, 3): In the engine's space.
         """
         back = self._turned.inv()
         shift, turn = back.apply(linear), back.apply(angular)
@@ -105,10 +98,7 @@ def unwound(turned: Array, before: Array) -> Array:
     An orientation tells of no whole turns: of it alone a block that has turned by half a
     turn is one that rocks from one side to the other.
 
-    Parameters
-    ----------
-    turned, before : (blocks, 3) float
-        Rotation vectors [rad].
+    `turned`, `before`, (blocks, 3): Rotation vectors [rad].
     """
     far = np.hypot.reduce(turned, axis=1, keepdims=True) > LEAST_TURN
     # Turned as it was built again it has the axis of before.
@@ -131,21 +121,11 @@ class Box:
 def plate(side: Side, depth: float, origin: Array, overlap: float, turn: float = 0.0) -> Box:
     """Return the box on one side of a joint; a thin rod for a corner.
 
-    Parameters
-    ----------
-    depth : float
-        How deep it is.
-    origin : (2,) float
-        Of its body.
-    overlap : float
-        Of two closed sides.
-    turn : float, optional
-        By which it is turned farther in the plane.
-
-    Returns
-    -------
-    Box
-        Its first axis is the joint's tangent, and its last is the depth.
+    `depth`: How deep it is.
+    `origin`, (2,): Of its body.
+    `overlap`: Of two closed sides.
+    `turn`: By which it is turned farther in the plane.
+    Returns: Its first axis is the joint's tangent, and its last is the depth.
     """
     along = side.ends[1] - side.ends[0]
     length = float(np.hypot(*along))

@@ -63,10 +63,7 @@ BESIDE = 1e-7
 class Planar(Polygons):
     """The blocks of a problem in the plane as bodies: the parts that `bulletmotion` moves.
 
-    Parameters
-    ----------
-    frame : Frame
-        Where in Bullet's frame the assembly lies.
+    `frame`: Where in Bullet's frame the assembly lies.
     """
 
     turns = TURNS
@@ -109,10 +106,8 @@ class Planar(Polygons):
     def linked(self, space: Space, reaches: Array | None = None) -> tuple[list[int], Joints]:
         """Create a body with links for each block, and one for the support.
 
-        Parameters
-        ----------
-        reaches : (joints, 2) float, optional
-            How far the sides of each joint reach into each other at its ends [size].
+        `reaches`, (joints, 2): How far the sides of each joint reach into each other at its
+            ends [size].
         """
         built, masses = [*self.states, self._at(SUPPORT)], partial(_masses, self.problem)
         links = _boxes(self.problem, reaches)

@@ -55,10 +55,7 @@ IMPACT = 10.0
 class Moving:
     """Bullet's space with one body for each block, held and moved.
 
-    Parameters
-    ----------
-    parts : Planar or Spatial
-        The blocks, as this engine needs them.
+    `parts`: The blocks, as this engine needs them.
     """
 
     def __init__(self, parts: Planar | Spatial, settings: Settings) -> None:

@@ -37,15 +37,10 @@ def linked(
 ) -> tuple[list[int], Ends]:
     """Create a body with links for each block; the last one is that of all supports.
 
-    Parameters
-    ----------
-    links : mapping of int to sequence of Link
-        By block, or `SUPPORT`.
-    built : sequence of State
-        How bodies are built, the last one that of supports.
-    masses : callable
-        Masses of a block.
-    friction : (joints,) float
+    `links`: By block, or `SUPPORT`.
+    `built`: How bodies are built, the last one that of supports.
+    `masses`: Masses of a block.
+    `friction`, (joints,).
     """
     bodies = list[int]()
     ends: Ends = defaultdict(list)

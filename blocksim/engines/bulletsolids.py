@@ -35,10 +35,7 @@ UNMOVED = State(NOTHING, (0.0, 0.0, 0.0, 1.0))
 class Upright:
     """Bullet's axes as those of the assembly.
 
-    Parameters
-    ----------
-    built : (blocks, 4) float
-        Quaternions with which bodies are built.
+    `built`, (blocks, 4): Quaternions with which bodies are built.
     """
 
     def __init__(self, built: Array) -> None:
@@ -97,10 +94,7 @@ class Spatial(Polyhedra):
     def linked(self, space: Space, reaches: Array | None = None) -> tuple[list[int], Joints]:
         """Create a body with links for each block, and one for all supports.
 
-        Parameters
-        ----------
-        reaches : (points,) float, optional
-            How far each point reaches into its plate [size].
+        `reaches`, (points,): How far each point reaches into its plate [size].
         """
         built, friction = [*self.states, UNMOVED], self.problem.friction
         bodies, ends = linked(space, self._links(reaches), built, self._masses, friction)

@@ -47,12 +47,8 @@ def friction_share(mu: float) -> float:
 class Contact(NamedTuple):
     """A point of contact in Bullet's frame.
 
-    Parameters
-    ----------
-    pair : (int, int, int, int)
-        Two bodies, and the link of each.
-    place, force : (3,) float
-        The force acts on the first body.
+    `pair`, (int, int, int, int): Two bodies, and the link of each.
+    `place`, `force`, (3,): The force acts on the first body.
     """
 
     pair: tuple[int, int, int, int]
@@ -87,12 +83,8 @@ class Space:
     A body has its share of a friction (`friction_share`). Its masses are its mass and its
     moments of inertia about x, y and z; one without them stays where it is.
 
-    Parameters
-    ----------
-    frame : Frame or Upright
-        Where the axes of an assembly lie in Bullet's frame.
-    breaking : float
-        Breaking threshold: points of contact closer than that replace each other.
+    `frame`: Where the axes of an assembly lie in Bullet's frame.
+    `breaking`: Breaking threshold: points of contact closer than that replace each other.
     """
 
     def __init__(self, frame: Frame | Upright, breaking: float) -> None:
@@ -128,16 +120,10 @@ class Space:
     ) -> None:
         """Set how steps are solved.
 
-        Parameters
-        ----------
-        step : float
-            Time step.
-        sweeps : int
-            Most sweeps.
-        change : float, optional
-            Change of a velocity in a sweep at which no more are made.
-        warm : float, optional
-            Share of their impulses with which contacts begin a step.
+        `step`: Time step.
+        `sweeps`: Most sweeps.
+        `change`: Change of a velocity in a sweep at which no more are made.
+        `warm`: Share of their impulses with which contacts begin a step.
         """
         self._set(
             fixedTimeStep=step,

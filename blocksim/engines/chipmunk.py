@@ -194,13 +194,10 @@ class Space:
     def contacts(self) -> Iterator[tuple[int, Array, Array, Any]]:
         """Go through the joints' contacts, which pymunk shows only to those who pickle a space.
 
-        Yields
-        ------
-        place : (2,) float
-        axes : (2, 2) float
-            Normal and tangent of its impulses, as they act on the block after the joint.
-        contact : Any
-            Chipmunk's own: `jnAcc` and `jtAcc` are its impulses.
+        Yields `place`, (2,).
+        Yields `axes`, (2, 2): Normal and tangent of its impulses, as they act on the block
+            after the joint.
+        Yields `contact`: Chipmunk's own: `jnAcc` and `jtAcc` are its impulses.
         """
         for one, other, pair in self._pairs():
             if one in self._polygons:

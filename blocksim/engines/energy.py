@@ -23,10 +23,7 @@ FELL = 1e-9
 def energy(problem: Problem, poses: Array, velocities: Array) -> float:
     """Return kinetic and potential energy, in mean weights times the size.
 
-    Parameters
-    ----------
-    poses, velocities : (blocks, 3 or 6) float
-        Of a world; its columns.
+    `poses`, `velocities`, (blocks, 3 or 6): Of a world; its columns.
     """
     return _kinetic(problem, poses, velocities) + _potential(problem, poses)
 
@@ -59,12 +56,9 @@ def _potential(problem: Problem, poses: Array) -> float:
 class Balance(Generic[Where]):
     """How far the energy has risen above that at the release.
 
-    Parameters
-    ----------
-    potential, kinetic : callable
-        Energies: of where blocks are, and of that and their velocities.
-    poses : (blocks, 3 or 6) float, or Place
-        Where blocks are at the release, as these functions are told it.
+    `potential`, `kinetic`: Energies: of where blocks are, and of that and their velocities.
+    `poses`, (blocks, 3 or 6) float, or Place: Where blocks are at the release, as these
+        functions are told it.
     """
 
     def __init__(

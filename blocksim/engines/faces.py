@@ -29,16 +29,10 @@ LEDGE_SHARE = 0.05
 class Side:
     """One side of a joint, scaled.
 
-    Parameters
-    ----------
-    body : int
-        Index of its block, or `SUPPORT`.
-    ends : (2, 2) float
-        Inner and outer end of what touches; the same twice for a corner.
-    inward : (2,) float
-        Unit normal into the body.
-    room : float
-        Extent of the body along `inward`; of a support the length of the joint.
+    `body`: Index of its block, or `SUPPORT`.
+    `ends`, (2, 2): Inner and outer end of what touches; the same twice for a corner.
+    `inward`, (2,): Unit normal into the body.
+    `room`: Extent of the body along `inward`; of a support the length of the joint.
     """
 
     joint: int
@@ -83,13 +77,9 @@ def reaching(sides: tuple[Side, Side], ends: Array, ways: Array) -> tuple[Side, 
 
     The other is the one Bullet takes the normal from.
 
-    Parameters
-    ----------
-    sides : (Side, Side)
-    ends : (2, 2) float
-        Of the joint.
-    ways : (2,) float
-        At either end; negative for a gap.
+    `sides`, (Side, Side).
+    `ends`, (2, 2): Of the joint.
+    `ways`, (2,): At either end; negative for a gap.
     """
     shorter = int(sides[1].length < sides[0].length)
     side, along = sides[shorter], ends[1] - ends[0]

@@ -50,10 +50,8 @@ def standing_at(assembly: Assembly) -> list[range]:
 def piers(assembly: Assembly) -> tuple[Array, ...]:
     """Piers from the ground up to each joint to the support.
 
-    Returns
-    -------
-    tuple of (4, 2) float
-        Corners, counter-clockwise [m]; each in the order of the assembly's joints.
+    Returns tuple of (4, 2): Corners, counter-clockwise [m]; each in the order of the assembly's
+        joints.
     """
     level = ground_level(assembly)
     found: list[Array] = []

@@ -24,14 +24,9 @@ DEEP = 3.0
 class OnMovingSupports(Blocks):
     """Blocks on supports that move as a problem's `moves` say.
 
-    Parameters
-    ----------
-    problem : Problem
-        With `moves`.
-    speed : float
-        Of the parameter of the supports' motion [size/sqrt(size/g)].
-    deep : float
-        How far below the structure the ground lies [size].
+    `problem`: With `moves`.
+    `speed`: Of the parameter of the supports' motion [size/sqrt(size/g)].
+    `deep`: How far below the structure the ground lies [size].
     """
 
     def __init__(

@@ -119,10 +119,8 @@ class Planar(Polygons):
     def joined(self, reaches: Array | None = None) -> Any:
         """Return a model of bodies that touch where the assembly has joints.
 
-        Parameters
-        ----------
-        reaches : (joints, 2) float, optional
-            How far the sides of each joint reach into each other at its ends [size].
+        `reaches`, (joints, 2): How far the sides of each joint reach into each other at its
+            ends [size].
         """
         assembly = self.assembly
         spec, bodies = self._bodies()
@@ -153,10 +151,8 @@ class Planar(Polygons):
 
         A contact gives way as its force, of which it has half, and as what is free to move.
 
-        Returns
-        -------
-        (joints, 2) float
-            Over what one gives way under the weight of a block that is free to move.
+        Returns (joints, 2): Over what one gives way under the weight of a block that is free to
+            move.
         """
         assembly, joints = self.assembly, self.assembly.joint_arrays
         free = np.zeros_like(pressures)

@@ -81,10 +81,7 @@ class Moving:
 
     A sweep is one of MuJoCo's steps, which solves the contacts to their end.
 
-    Parameters
-    ----------
-    parts : Planar or Spatial
-        The blocks, as this engine needs them; coordinates are MuJoCo's.
+    `parts`: The blocks, as this engine needs them; coordinates are MuJoCo's.
     """
 
     def __init__(self, parts: Planar | Spatial, settings: Settings) -> None:

@@ -49,10 +49,7 @@ class Spatial(Polyhedra):
     def joined(self, reaches: Array | None = None) -> Any:
         """Return a model of bodies that touch at the corners of joints.
 
-        Parameters
-        ----------
-        reaches : (points,) float, optional
-            How far each corner reaches into its plate [size].
+        `reaches`, (points,): How far each corner reaches into its plate [size].
         """
         spec, bodies = self._spec()
         bodies.append(spec.worldbody)

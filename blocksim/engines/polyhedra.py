@@ -39,18 +39,12 @@ TOUCHING = 1e-6
 class Touch(NamedTuple):
     """What touches at a joint.
 
-    Parameters
-    ----------
-    plate, corners : int
-        Blocks with the plate and with the corners, or `SUPPORT`.
-    sign : float
-        1 where the corners are on `after` of the joint, else -1.
-    places : (k, 3) float
-        Of the corners, in the order of the joint's points [size].
-    axes : (3, 3) float
-        Columns: two along the plate, and its normal towards the block with the corners.
-    spread : float
-        How far the corners are from their mean.
+    `plate`, `corners`: Blocks with the plate and with the corners, or `SUPPORT`.
+    `sign`: 1 where the corners are on `after` of the joint, else -1.
+    `places`, (k, 3): Of the corners, in the order of the joint's points [size].
+    `axes`, (3, 3): Columns: two along the plate, and its normal towards the block with the
+        corners.
+    `spread`: How far the corners are from their mean.
     """
 
     joint: int
@@ -78,12 +72,8 @@ class Polyhedra:
 
     Poses are centres [size] and rotation vectors since blocks were built, (blocks, 6).
 
-    Attributes
-    ----------
-    loose : bool
-        Whether blocks may meet that share no joint.
-    largest : float
-        Way in a step that keeps overlaps small [size].
+    `loose`: Whether blocks may meet that share no joint.
+    `largest`: Way in a step that keeps overlaps small [size].
     """
 
     def __init__(self, problem: Problem[SpatialAssembly]) -> None:

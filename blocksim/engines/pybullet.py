@@ -96,10 +96,7 @@ def blocks_in_space(problem: Problem[SpatialAssembly], settings: Settings) -> Wo
 class Bodies(Moving):
     """Blocks of the plane in Bullet, which tell what their joints carry.
 
-    Parameters
-    ----------
-    frame : Frame, optional
-        Where in Bullet's frame the assembly lies, turned about the vertical. It should not
+    `frame`: Where in Bullet's frame the assembly lies, turned about the vertical. It should not
         matter, and this is how to see whether it does.
     """
 

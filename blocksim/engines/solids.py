@@ -34,22 +34,15 @@ SHARPEST = 0.05
 class Solids:
     """The polygons of an assembly, and which of them may meet.
 
-    Attributes
-    ----------
-    moving : list of (int, (k, 2) float)
-        Polygons of blocks: the block, and corners from its centre of mass, scaled.
-    fixed : list of (k, 2) float
-        Polygons of what blocks stand on, scaled; they are numbered on from the others.
-    floor : (4, 2) float
-        That of the floor, numbered last.
-    level : float
-        Height of the floor.
-    loose : bool
-        Whether blocks may meet that share no joint.
-    left : float
-        How much farther blocks have to move for that [size].
-    holds : (joints,) bool
-        Which joints still are joints.
+    `moving`, list of (int, (k, 2) float): Polygons of blocks: the block, and corners from its
+        centre of mass, scaled.
+    `fixed`, list of (k, 2): Polygons of what blocks stand on, scaled; they are numbered on from
+        the others.
+    `floor`, (4, 2): That of the floor, numbered last.
+    `level`: Height of the floor.
+    `loose`: Whether blocks may meet that share no joint.
+    `left`: How much farther blocks have to move for that [size].
+    `holds`, (joints,): Which joints still are joints.
     """
 
     def __init__(self, assembly: Assembly) -> None:
@@ -83,9 +76,7 @@ class Solids:
     def update(self, poses: Array) -> NDArray[np.int64]:
         """Look where blocks are, and return the joints that have ended since.
 
-        Parameters
-        ----------
-        poses : (blocks, 3 or 6) float
+        `poses`, (blocks, 3 or 6).
         """
         planar = poses[:, :PLANAR]
         moved = poses.copy()

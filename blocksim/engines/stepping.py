@@ -70,12 +70,8 @@ Passing = NDArray[np.bool_]
 class Stepping(Placed):
     """Poses and velocities of blocks, carried on by steps.
 
-    Parameters
-    ----------
-    accuracy : float
-        Share by which motion may be off.
-    restitution : float
-        Share of the velocity with which blocks hit that they part with (Newton's).
+    `accuracy`: Share by which motion may be off.
+    `restitution`: Share of the velocity with which blocks hit that they part with (Newton's).
     """
 
     def __init__(self, problem: Problem, accuracy: float, restitution: float) -> None:

@@ -37,12 +37,8 @@ ANY_THICKNESS = "two joints on each half, and a line of thrust through the middl
 class ArchOffers(Offers):
     """What is known of an arch.
 
-    Parameters
-    ----------
-    problem : Problem
-        Of this arch, under its own weight; gravity may lean out of the plane.
-    maker : CircularArch
-        What made it, and makes it of other ratios.
+    `problem`: Of this arch, under its own weight; gravity may lean out of the plane.
+    `maker`: What made it, and makes it of other ratios.
     """
 
     def __init__(self, arch: Arch, problem: Problem, maker: CircularArch) -> None:

@@ -67,10 +67,7 @@ def with_friction(data: object, friction: float) -> object:
 def deepened(table: dict[str, Any], depth: float, *own: type[Kind[Any]]) -> dict[str, Any]:
     """Return what a structure file says, its blocks so long out of the plane [m].
 
-    Parameters
-    ----------
-    *own : type
-        Kinds of one's own.
+    `own`: Kinds of one's own.
     """
     if "kind" in table:
         kinds = {each.name: each for each in (*KINDS.values(), *own)}

@@ -30,14 +30,9 @@ Function = Callable[[Array], tuple[Array, Array]]
 class Curve:
     """A centreline from the left springing to the right, which only ever turns to the right.
 
-    Parameters
-    ----------
-    start, end : float
-        Range of its parameter.
-    at, first, second : callable
-        x and y at parameters, and their derivatives.
-    breaks : tuple of float
-        Parameters at which the curvature jumps.
+    `start`, `end`: Range of its parameter.
+    `at`, `first`, `second`: x and y at parameters, and their derivatives.
+    `breaks`: Parameters at which the curvature jumps.
     """
 
     start: float
@@ -121,18 +116,13 @@ ALONG = 3
 class Voussoirs:
     """Voussoirs from left to right.
 
-    Parameters
-    ----------
-    corners : (n, 4, 2) float
-        Chord polygons: both ends of the intrados, then of the extrados from right to left [m].
-    area : (n,) float
-        [m^2]
-    centre : (n, 2) float
-        Centroids [m].
-    polar : (n,) float
-        Second moments of area about the centroids [m^4].
-    cover : (n, 4) float
-        Over the extrados the integrals of dx, y dx, x dx and x y dx, for the weight of fill.
+    `corners`, (n, 4, 2): Chord polygons: both ends of the intrados, then of the extrados from
+        right to left [m].
+    `area`, (n,): [m^2]
+    `centre`, (n, 2): Centroids [m].
+    `polar`, (n,): Second moments of area about the centroids [m^4].
+    `cover`, (n, 4): Over the extrados the integrals of dx, y dx, x dx and x y dx, for the
+        weight of fill.
     """
 
     corners: Array
@@ -167,12 +157,8 @@ class Voussoirs:
 def strips(curve: Curve, thickness: float, inner: Array, outer: Array) -> Voussoirs:
     """Measure voussoirs between the two offsets of a centreline.
 
-    Parameters
-    ----------
-    thickness : float
-        [m]
-    inner, outer : (n + 1,) float
-        Parameters at which joints meet intrados and extrados.
+    `thickness`: [m]
+    `inner`, `outer`, (n + 1,): Parameters at which joints meet intrados and extrados.
     """
     half = thickness / 2
     owner, low, high = _parts(curve, inner, outer)
@@ -232,10 +218,7 @@ def _parts(curve: Curve, inner: Array, outer: Array) -> tuple[Indices, Array, Ar
 def chords(corners: Array) -> Voussoirs:
     """Measure voussoirs with straight faces.
 
-    Parameters
-    ----------
-    corners : (n, 4, 2) float
-        As of `Voussoirs`.
+    `corners`, (n, 4, 2): As of `Voussoirs`.
     """
     base = corners[:, :1]
     arm = corners - base

@@ -118,14 +118,9 @@ def named_file(
 ) -> Generator[object]:
     """Give what a structure file says; what is wrong with it is said with the file's name.
 
-    Parameters
-    ----------
-    path : Path or str
-        As of `load_structure`.
-    reading : Reading
-        Unit and layers of a drawing.
-    drawing : Drawing, optional
-        What `drawing_of` read of it, where that was asked for before.
+    `path`: As of `load_structure`.
+    `reading`: Unit and layers of a drawing.
+    `drawing`: What `drawing_of` read of it, where that was asked for before.
     """
     # As it was given: a name that ends in a slash is no file.
     path, near = os.fspath(path), ""
@@ -276,15 +271,8 @@ def around_said(
 def problem_of(kind: Maker, around: Around) -> Problem:
     """Ask about a kind of structure.
 
-    Parameters
-    ----------
-    around : Around
-        Friction, loads and the like.
-
-    Returns
-    -------
-    Problem
-        Dead loads begin with the weight of fill.
+    `around`: Friction, loads and the like.
+    Returns: Dead loads begin with the weight of fill.
     """
     built = kind.built if around.size is None else kind.built_of(around.size)
     problem = structure.problem_of(around, built.bodies, built.assembly, built.notes)

@@ -77,10 +77,7 @@ def _is_scenario(path: str) -> bool:
 class Known:
     """A structure, and what its source says of it.
 
-    Parameters
-    ----------
-    quick : bool
-        Whether `validate --quick` takes it.
+    `quick`: Whether `validate --quick` takes it.
     """
 
     name: str
@@ -125,10 +122,7 @@ def load_recording(path: AnyPath) -> Recording[Any]:
 def maker_of(origin: Mapping[str, object]) -> Kind[Any] | None:
     """Return the maker that a recording tells of; None of blocks that were given.
 
-    Parameters
-    ----------
-    origin : mapping
-        What `Kind.origin` returned.
+    `origin`: What `Kind.origin` returned.
     """
     table: dict[str, Any] = dict(origin)
     if table.get("kind") == CircularArch.name and "half_angle" in table:

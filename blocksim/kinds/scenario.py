@@ -29,20 +29,12 @@ THICK = ("eta", "thickness", "ratio")
 class Scenario:
     """An arch to ask about, and what is known of it.
 
-    Parameters
-    ----------
-    name : str
-        File name without its ending.
-    given : mapping of str to object
-        Parameters of `CircularArch`; a thickness need not be among them.
-    lean : float
-        Angle by which gravity leans out of the plane [rad].
-    expected_modes : tuple of Mode
-        Empty where nothing is said.
-    expected_verdict : Verdict or None
-        Of the arch at its own thickness.
-    quick : bool
-        Whether `validate --quick` takes it.
+    `name`: File name without its ending.
+    `given`: Parameters of `CircularArch`; a thickness need not be among them.
+    `lean`: Angle by which gravity leans out of the plane [rad].
+    `expected_modes`: Empty where nothing is said.
+    `expected_verdict`: Of the arch at its own thickness.
+    `quick`: Whether `validate --quick` takes it.
     """
 
     name: str = ""

@@ -45,33 +45,19 @@ class ArchTable(Written):
 
     Either `half_angle_deg` and `eta`, or `span_m`, `rise_m` and `thickness_m`.
 
-    Parameters
-    ----------
-    voussoirs : int
-        How many.
-    half_angle_deg : float
-        Half-angle of embrace, crown to springing [deg].
-    eta : float
-        Thickness over radius; without it the arch is asked about at 0.99 of its least.
-    radius : float
-        Of the centreline [m]; 1 if left out.
-    span_m : float
-        Distance between the springings [m].
-    rise_m : float
-        Height of the crown over the springings [m].
-    thickness_m : float
-        [m]
-    at : str
-        Line that span and rise are of; the intrados if left out.
-    weight : str
-        Where a voussoir's weight acts: at its arc of the centreline, or at its true centre.
-        By default `sector` of an arch in metres, else `centreline`.
-    depth : float
-        Length out of the plane [m].
-    specific_weight : float
-        Weight of a unit of volume [N/m3]; 20000 if left out.
-    unit_weight_kN_per_m3 : float
-        The same [kN/m3].
+    `voussoirs`: How many.
+    `half_angle_deg`: Half-angle of embrace, crown to springing [deg].
+    `eta`: Thickness over radius; without it the arch is asked about at 0.99 of its least.
+    `radius`: Of the centreline [m]; 1 if left out.
+    `span_m`: Distance between the springings [m].
+    `rise_m`: Height of the crown over the springings [m].
+    `thickness_m`: [m]
+    `at`: Line that span and rise are of; the intrados if left out.
+    `weight`: Where a voussoir's weight acts: at its arc of the centreline, or at its true
+        centre. By default `sector` of an arch in metres, else `centreline`.
+    `depth`: Length out of the plane [m].
+    `specific_weight`: Weight of a unit of volume [N/m3]; 20000 if left out.
+    `unit_weight_kN_per_m3`: The same [kN/m3].
     """
 
     voussoirs: Annotated[int, VOUSSOIRS]
@@ -92,12 +78,8 @@ class ArchTable(Written):
 class ContactTable(Written):
     """Table `[contact]`: friction of every joint, as a coefficient or as an angle.
 
-    Parameters
-    ----------
-    mu : float
-        Friction coefficient; inf allowed.
-    friction_angle_deg : float
-        The angle whose tangent it is [deg].
+    `mu`: Friction coefficient; inf allowed.
+    `friction_angle_deg`: The angle whose tangent it is [deg].
     """
 
     mu: Annotated[float, FRICTION, BeforeValidator(as_text)] | None = None
@@ -108,10 +90,7 @@ class ContactTable(Written):
 class GravityTable(Written):
     """Table `[gravity]`: how far it leans out of the plane.
 
-    Parameters
-    ----------
-    lean_deg : float
-        [deg]
+    `lean_deg`: [deg]
     """
 
     lean_deg: Annotated[float, LEAN_DEG] = 0.0
@@ -121,14 +100,9 @@ class GravityTable(Written):
 class ExpectTable(Written):
     """Table `[expect]`: what the source says of the continuous arch.
 
-    Parameters
-    ----------
-    modes : tuple of Mode
-        Collapse modes: several where the arch lies on a line of the map.
-    eta : float, optional
-        Least thickness-to-radius ratio; absent where none stands.
-    verdict : Verdict, optional
-        Of the arch at its own eta, where that is the claim.
+    `modes`: Collapse modes: several where the arch lies on a line of the map.
+    `eta`: Least thickness-to-radius ratio; absent where none stands.
+    `verdict`: Of the arch at its own eta, where that is the claim.
     """
 
     modes: Annotated[tuple[Mode, ...], Field(min_length=1)] = ()
@@ -140,22 +114,13 @@ class ExpectTable(Written):
 class ScenarioFile(Written):
     """A scenario file as written.
 
-    Parameters
-    ----------
-    title : str
-        In a line.
-    source : str
-        Where what is known of it was published.
-    arch : table
-        What is built.
-    contact : table
-        Friction.
-    gravity : table
-        Where it points.
-    expect : table
-        What the source says, for `validate`.
-    quick : bool
-        Whether `validate --quick` asks it.
+    `title`: In a line.
+    `source`: Where what is known of it was published.
+    `arch`: What is built.
+    `contact`: Friction.
+    `gravity`: Where it points.
+    `expect`: What the source says, for `validate`.
+    `quick`: Whether `validate --quick` asks it.
     """
 
     title: Annotated[str, Field(min_length=1, max_length=200)]
@@ -190,10 +155,7 @@ def written_in(
 ) -> dict[str, Any]:
     """Read a small TOML file.
 
-    Parameters
-    ----------
-    what, allowed : str
-        What the file is and has to be, for what is said of one that is not.
+    `what`, `allowed`: What the file is and has to be, for what is said of one that is not.
     """
     text = read_file(path, what, allowed, largest)
     try:

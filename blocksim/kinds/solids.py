@@ -26,16 +26,10 @@ def ground(half: float, deep: float) -> Solid:
 def wedge(inner: Array, outer: Array, start: float, end: float) -> Array:
     """Turn a piece of a meridian about the z axis, from one azimuth to another.
 
-    Parameters
-    ----------
-    inner, outer : (2, 2) float
-        Distance from the axis and height of its corners, lower and upper [m].
-    start, end : float
-        Azimuths [rad].
-
-    Returns
-    -------
-    (8, 3) float
+    `inner`, `outer`, (2, 2): Distance from the axis and height of its corners, lower and upper
+        [m].
+    `start`, `end`: Azimuths [rad].
+    Returns (8, 3).
     """
     meridian = np.concatenate([inner, outer])
     return np.array(
@@ -48,22 +42,12 @@ def voussoir(
 ) -> Array:
     """Make a voussoir of a barrel along y, sheared along y by the tangent of the skew times x.
 
-    Parameters
-    ----------
-    radii : (float, float)
-        Of intrados and extrados [m].
-    angles : (float, float)
-        Of its two joints from the crown, towards x [rad].
-    along : (float, float)
-        Its ends at x = 0 [m].
-    skew : float
-        [rad]
-    half_angle : float
-        From the crown to a springing, which lies at z = 0 at the intrados [rad].
-
-    Returns
-    -------
-    (8, 3) float
+    `radii`, (float, float): Of intrados and extrados [m].
+    `angles`, (float, float): Of its two joints from the crown, towards x [rad].
+    `along`, (float, float): Its ends at x = 0 [m].
+    `skew`: [rad]
+    `half_angle`: From the crown to a springing, which lies at z = 0 at the intrados [rad].
+    Returns (8, 3).
     """
     low = radii[0] * math.cos(half_angle)
     found: list[list[float]] = []

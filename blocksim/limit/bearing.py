@@ -29,10 +29,7 @@ LEAST = 1e-9
 class Bearing:
     """What soil bears more at most, as columns of a programme.
 
-    Parameters
-    ----------
-    cones : Cones
-        Of the problem.
+    `cones`: Of the problem.
     """
 
     def __init__(self, problem: Problem, cones: Cones) -> None:
@@ -49,12 +46,8 @@ class Bearing:
     ) -> tuple[Optimum, Array]:
         """Make the factor on a column as large as the balance of forces allows.
 
-        Returns
-        -------
-        Optimum
-            As of `blocksim.limit.programme.most`.
-        shares : (loads,) float
-            Of what soil bears; empty where nothing balances.
+        Returns: As of `blocksim.limit.programme.most`.
+        Returns `shares`, (loads,): Of what soil bears; empty where nothing balances.
         """
         cones, count = self._cones, len(self._loads)
         low, high = cones.bounds
@@ -99,11 +92,8 @@ def bears(problem: Problem) -> bool:
 def settled(problem: Problem, live: Array | None = None) -> Problem:
     """Return a problem on which soil presses by what is mobilised of what it bears.
 
-    Parameters
-    ----------
-    live : (blocks, 3) float, optional
-        Loads of which the factor is made largest; by default it is the margin of all contacts
-        under what acts.
+    `live`, (blocks, 3): Loads of which the factor is made largest; by default it is the margin
+        of all contacts under what acts.
     """
     if not bears(problem):
         return problem

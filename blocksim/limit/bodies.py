@@ -42,17 +42,10 @@ def alike(problem: Problem, cones: Cones, rates: Array) -> list[int]:
 def widened(problem: Problem, cones: Cones, rates: Array) -> Array | None:
     """Add a little of a motion that opens every joint, so that rounding closes none.
 
-    Parameters
-    ----------
-    cones : Cones
-        Of the same problem.
-    rates : (blocks, 3) float
-        A mechanism, which joints allow but for round-off.
-
-    Returns
-    -------
-    (blocks, 3) float or None
-        None where no such motion is known, as with friction without bound.
+    `cones`: Of the same problem.
+    `rates`, (blocks, 3): A mechanism, which joints allow but for round-off.
+    Returns (blocks, 3) or None: None where no such motion is known, as with friction without
+        bound.
     """
     pull = problem.applied_forces()
     work = float((pull * rates).sum())

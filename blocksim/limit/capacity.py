@@ -29,14 +29,11 @@ from blocksim.limit.symmetry import mirror_of
 class Collapse:
     """The largest factor on the live loads at which forces of equilibrium exist.
 
-    Parameters
-    ----------
-    load_factor : float or None
-        None where there is no equilibrium at any factor; inf where no live load is too much.
-    forces : (joints, 2, 2) float or None
-        At collapse; as of `Equilibrium`.
-    mechanism : (blocks, 3) float or None
-        Rates x, y and rotation as the blocks begin to move, the largest of them 1.
+    `load_factor`: None where there is no equilibrium at any factor; inf where no live load is
+        too much.
+    `forces`, (joints, 2, 2): At collapse; as of `Equilibrium`.
+    `mechanism`, (blocks, 3): Rates x, y and rotation as the blocks begin to move, the largest
+        of them 1.
     """
 
     load_factor: float | None
@@ -49,10 +46,7 @@ class Capacity:
 
     Where the problem has a strength its blocks crush.
 
-    Parameters
-    ----------
-    problem : Problem
-        In its plane. Its own live loads and load factor do not matter to answers.
+    `problem`: In its plane. Its own live loads and load factor do not matter to answers.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -67,10 +61,8 @@ class Capacity:
     def of(self, live: Array) -> Collapse:
         """Find the largest factor on live loads.
 
-        Parameters
-        ----------
-        live : (blocks, 3) float
-            Forces and moments about the centres [mean weight, and that times the size].
+        `live`, (blocks, 3): Forces and moments about the centres [mean weight, and that times
+            the size].
         """
         cones = self.cones
         column = sparse.csc_array(cones.loads(live)[:, None])
@@ -88,10 +80,7 @@ class Capacity:
         It is the least share of what acts always that has to be there beside the live loads.
         These are on the right side of a programme of which nothing else changes.
 
-        Parameters
-        ----------
-        live : (blocks, 3) float
-            As of `of`, not all 0.
+        `live`, (blocks, 3): As of `of`, not all 0.
         """
         if self._bearing is not None or self._crushing is not None:
             factor = self.of(live).load_factor
@@ -134,10 +123,7 @@ class Capacity:
         Forces that balance each are added to a state of equilibrium under what acts always, in
         which every contact presses. They need not be the best ones: near 0 that is no matter.
 
-        Parameters
-        ----------
-        lives : (loads, blocks, 3) float
-            As of `of`.
+        `lives`, (loads, blocks, 3): As of `of`.
         """
         at_rest, spread, balanced = self._at_rest
         if at_rest is None:

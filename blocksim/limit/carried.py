@@ -32,33 +32,25 @@ ALIKE = 1e-6
 class Carried:
     """Factors of safety, thrust and reactions of a structure in its plane.
 
-    Parameters
-    ----------
-    geometrical_factor : float or None
-        Thickness over the least that stands, of a circular arch under its own weight. Of
-        anything else the number of times that all joints are wider than they need be, about
-        their middle, under the same loads (Heyman 1969). Below 1 where it falls; inf where no
-        width is needed; None where no width suffices.
-    friction_factor : float or None
-        Friction over the least that is needed; inf where none is, None where none suffices.
-    least_friction : float or None
-        The coefficient that is needed in every joint; None where joints differ, or none
+    `geometrical_factor`: Thickness over the least that stands, of a circular arch under its own
+        weight. Of anything else the number of times that all joints are wider than they need
+        be, about their middle, under the same loads (Heyman 1969). Below 1 where it falls; inf
+        where no width is needed; None where no width suffices.
+    `friction_factor`: Friction over the least that is needed; inf where none is, None where
+        none suffices.
+    `least_friction`: The coefficient that is needed in every joint; None where joints differ,
+        or none suffices.
+    `strength_used`: Share of width and of friction, the same in every joint, that the safest
+        state of equilibrium needs; above 1 where the structure falls.
+    `joint`: Where thrust is told.
+    `least`, `greatest`: The states of least and of greatest thrust there; None where there is
+        no such joint or no equilibrium.
+    `needed`: The least compressive strength; None where the problem has no strength, or none
         suffices.
-    strength_used : float or None
-        Share of width and of friction, the same in every joint, that the safest state of
-        equilibrium needs; above 1 where the structure falls.
-    joint : int or None
-        Where thrust is told.
-    least, greatest : Thrust or None
-        The states of least and of greatest thrust there; None where there is no such joint or
-        no equilibrium.
-    needed : Needed or None
-        The least compressive strength; None where the problem has no strength, or none
-        suffices.
-    forces : (joints, 2, 2) float or None
-        Of the safest state, as of `blocksim.limit.Equilibrium`; where blocks crush, of that
-        which presses them least. Where the structure falls they are those that lack least
-        strength, and no forces of equilibrium; None where there are none either.
+    `forces`, (joints, 2, 2): Of the safest state, as of `blocksim.limit.Equilibrium`; where
+        blocks crush, of that which presses them least. Where the structure falls they are those
+        that lack least strength, and no forces of equilibrium; None where there are none
+        either.
     """
 
     problem: Problem
@@ -127,12 +119,9 @@ def carried_by(
 ) -> Carried:
     """Find what a structure carries: three searches and two linear programmes.
 
-    Parameters
-    ----------
-    joint : int, optional
-        Where thrust is asked for; by default at the crown (`blocksim.limit.margins.crown`).
-    needed : Needed, optional
-        The least strength of blocks that crush.
+    `joint`: Where thrust is asked for; by default at the crown
+        (`blocksim.limit.margins.crown`).
+    `needed`: The least strength of blocks that crush.
     """
     found = margins(problem)
     joint = crown(problem) if joint is None else joint

@@ -32,16 +32,10 @@ class Cones:
     reach (`ease`). The parts at a joint are in units of the lesser weight that the two blocks
     at it carry (`unit`).
 
-    Parameters
-    ----------
-    problem : Problem
-        In its plane.
-    friction : (joints,) float, optional
-        Instead of the problem's own.
-    width : float
-        Share of each joint's width that may be used, about its middle.
-    weights : (blocks,) float, optional
-        What each block carries, instead of an estimate [mean weights].
+    `problem`: In its plane.
+    `friction`, (joints,): Instead of the problem's own.
+    `width`: Share of each joint's width that may be used, about its middle.
+    `weights`, (blocks,): What each block carries, instead of an estimate [mean weights].
     """
 
     def __init__(
@@ -213,10 +207,7 @@ def carried_weights(problem: Problem) -> Array:
     Each block hands on what it carries to those of its neighbours that are nearer to the
     supports, by the number of joints between, in equal shares.
 
-    Returns
-    -------
-    (blocks,) float
-        In mean weights.
+    Returns (blocks,): In mean weights.
     """
     assembly = problem.assembly
     pull = problem.applied_forces()

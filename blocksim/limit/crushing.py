@@ -43,15 +43,12 @@ SPARED = (0.9, 0.5, 0.2, 0.05)
 class Needed:
     """The least compressive strength at which forces of equilibrium exist.
 
-    Parameters
-    ----------
-    low, high : float
-        Between which it is [Pa]: no forces need less, and those that were found need the most.
-    forces : (joints, 2, 2) float
-        Those that were found, as of `Equilibrium`: they press least on the joint that is
-        pressed most.
-    mechanism : (blocks, 3) float
-        Rates x, y and rotation with which blocks of less strength begin to move.
+    `low`, `high`: Between which it is [Pa]: no forces need less, and those that were found need
+        the most.
+    `forces`, (joints, 2, 2): Those that were found, as of `Equilibrium`: they press least on
+        the joint that is pressed most.
+    `mechanism`, (blocks, 3): Rates x, y and rotation with which blocks of less strength begin
+        to move.
     """
 
     low: float
@@ -63,20 +60,11 @@ class Needed:
 class Crushing:
     """The programmes of joints that crush.
 
-    Parameters
-    ----------
-    problem : Problem
-        In its plane, with weights and sizes.
-    cones : Cones
-        Of the problem.
-    strength : float
-        Compressive strength [Pa], of any size.
-
-    Raises
-    ------
-    InputError
-        If there are no weights or sizes to compare the strength with, or a corner bears a
-        block: a point bears nothing then.
+    `problem`: In its plane, with weights and sizes.
+    `cones`: Of the problem.
+    `strength`: Compressive strength [Pa], of any size.
+    Raises `InputError`: If there are no weights or sizes to compare the strength with, or a
+        corner bears a block: a point bears nothing then.
     """
 
     def __init__(self, problem: Problem, cones: Cones, strength: float) -> None:
@@ -93,10 +81,7 @@ class Crushing:
 
         The factor is the last of its values; the first prices are those of the balance.
 
-        Raises
-        ------
-        Unsolved
-            If the solver gives up.
+        Raises `Unsolved`: If the solver gives up.
         """
         cost = np.append(np.zeros(self._cones.count), -1.0)
         return self._solve(cost, column, right)
@@ -199,17 +184,9 @@ def strength_needed(problem: Problem) -> Needed | None:
 
     None where there are none at any strength.
 
-    Parameters
-    ----------
-    problem : Problem
-        In its plane, with weights and sizes.
-
-    Raises
-    ------
-    InputError
-        As of `Crushing`.
-    Unsolved
-        If the solver gives up.
+    `problem`: In its plane, with weights and sizes.
+    Raises `InputError`: As of `Crushing`.
+    Raises `Unsolved`: If the solver gives up.
     """
     require_sizes(problem)
     cones, pull = Cones(problem), problem.applied_forces()

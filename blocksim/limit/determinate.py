@@ -29,10 +29,7 @@ RUBS = 1e-13
 def margin_of_stack(problem: Problem) -> float | None:
     """Return the margin of `equilibrium`, of a stack.
 
-    Returns
-    -------
-    float or None
-        None where blocks reach the ground in more ways than one, where a corner rests on a
+    Returns: None where blocks reach the ground in more ways than one, where a corner rests on a
         face, where friction is 0 or has no bound, or where soil bears what moves into it.
 
     Examples
@@ -68,10 +65,7 @@ def margin_of_stack(problem: Problem) -> float | None:
 def margin_of_tower(problem: Problem[SpatialAssembly]) -> float | None:
     """Return the margin of `can_rest`, of a tower in which nothing rubs.
 
-    Returns
-    -------
-    float or None
-        None where blocks reach the ground in more ways than one, where a joint is no face,
+    Returns: None where blocks reach the ground in more ways than one, where a joint is no face,
         carries a force across or a moment about its normal, or would have to pull as a whole.
     """
     assembly = problem.assembly

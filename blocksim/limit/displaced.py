@@ -40,14 +40,9 @@ HALVINGS = 10
 class Frame:
     """Blocks at rest on supports that have moved.
 
-    Parameters
-    ----------
-    value : float
-        The parameter of the supports' motion [m].
-    poses : (blocks, 3) float
-        Centres of mass x, y in units of the size, and rotations.
-    closed : (joints, 2) bool
-        Which ends of the joints are closed, inner and outer.
+    `value`: The parameter of the supports' motion [m].
+    `poses`, (blocks, 3): Centres of mass x, y in units of the size, and rotations.
+    `closed`, (joints, 2): Which ends of the joints are closed, inner and outer.
     """
 
     value: float

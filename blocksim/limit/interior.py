@@ -24,18 +24,10 @@ FINEST = 1e-7
 def most_inside(cones: Cones, column: Any, right: Array, highest: float) -> Optimum | None:
     """Make the factor on a column as large as the balance of forces allows.
 
-    Parameters
-    ----------
-    column : (equations, 1) sparse
-    right : (equations,) float
-        What parts and column balance together.
-    highest : float
-        The factor is at most that.
-
-    Returns
-    -------
-    Optimum or None
-        As of `LinearProgramme`, without a basis; None where the solver does not end there.
+    `column`, (equations, 1) sparse.
+    `right`, (equations,): What parts and column balance together.
+    `highest`: The factor is at most that.
+    Returns: As of `LinearProgramme`, without a basis; None where the solver does not end there.
         Where nothing balances there are no values, and prices whose motion gains work.
     """
     turned: Any = cones.balance.T.tocsr()

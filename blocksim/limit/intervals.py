@@ -31,10 +31,7 @@ FINEST = 1e-9
 class Interval:
     """Values at which forces of equilibrium exist.
 
-    Parameters
-    ----------
-    low, high : float
-        -inf and inf where they exist up to the end of what was asked.
+    `low`, `high`: -inf and inf where they exist up to the end of what was asked.
     """
 
     low: float
@@ -44,16 +41,9 @@ class Interval:
 def over_factor(problem: Problem[Any]) -> tuple[Interval, ...]:
     """Find the factors on the live loads at which forces of equilibrium exist.
 
-    Parameters
-    ----------
-    problem : Problem
-        With live loads; a plane one with gravity in its plane. Its own load factor does not
-        matter.
-
-    Returns
-    -------
-    tuple of Interval
-        One at most.
+    `problem`: With live loads; a plane one with gravity in its plane. Its own load factor does
+        not matter.
+    Returns: One at most.
     """
     most = collapse(problem).load_factor
     if most is None:
@@ -66,17 +56,9 @@ def over_factor(problem: Problem[Any]) -> tuple[Interval, ...]:
 def over_tilt(problem: Problem[Any], low: float, high: float) -> tuple[Interval, ...]:
     """Find the angles by which a table tilts at which forces of equilibrium exist.
 
-    Parameters
-    ----------
-    problem : Problem
-        A plane one with gravity in its plane.
-    low, high : float
-        Range of the angles [rad], within a half turn.
-
-    Returns
-    -------
-    tuple of Interval
-        By angle [rad].
+    `problem`: A plane one with gravity in its plane.
+    `low`, `high`: Range of the angles [rad], within a half turn.
+    Returns: By angle [rad].
     """
     if problem.is_loaded or problem.unturned.any():
         return _joined(_Arc(problem).parts(low, high), low, high)

@@ -31,12 +31,8 @@ ROUNDS = 50
 class LeastMotion:
     """Contact forces, and the accelerations they leave.
 
-    Parameters
-    ----------
-    forces : (joints, 2, 2) float
-        As of `Equilibrium`.
-    accelerations : (blocks, 3) float
-        x, y [g] and rotation [g/size].
+    `forces`, (joints, 2, 2): As of `Equilibrium`.
+    `accelerations`, (blocks, 3): x, y [g] and rotation [g/size].
     """
 
     forces: Array
@@ -46,10 +42,7 @@ class LeastMotion:
 def least_motion(problem: Problem) -> LeastMotion | None:
     """Find the contact forces that leave blocks at rest the least acceleration.
 
-    Returns
-    -------
-    LeastMotion or None
-        None where the solver does not find it.
+    Returns: None where the solver does not find it.
     """
     # Imported here: few questions need it, and it takes longer to load than to solve.
     from scipy.optimize import nnls

@@ -36,16 +36,10 @@ Matrix: TypeAlias = "sparse.csc_array | Array"
 class Optimum:
     """What came of a linear programme.
 
-    Parameters
-    ----------
-    values : (unknowns,) float
-        Empty where there is no optimum.
-    prices : (rows,) float
-        By how much the least cost grows with the right side of each row.
-    unbounded : bool
-        Whether nothing limits the cost from below.
-    basis : object
-        HiGHS's own: what is active.
+    `values`, (unknowns,): Empty where there is no optimum.
+    `prices`, (rows,): By how much the least cost grows with the right side of each row.
+    `unbounded`: Whether nothing limits the cost from below.
+    `basis`: HiGHS's own: what is active.
     """
 
     values: Array
@@ -73,14 +67,9 @@ class Optimum:
 class Choice:
     """What came of a programme with unknowns that are 0 or 1.
 
-    Parameters
-    ----------
-    values : (unknowns,) float
-        The best that was found; empty where nothing was.
-    least : float
-        What the cost cannot be below.
-    is_empty : bool
-        Whether nothing satisfies the rows.
+    `values`, (unknowns,): The best that was found; empty where nothing was.
+    `least`: What the cost cannot be below.
+    `is_empty`: Whether nothing satisfies the rows.
     """
 
     values: Array
@@ -107,22 +96,15 @@ class LinearProgramme:
     def solve(self, cost: Array, matrix: Matrix, rows: Ends, bounds: Ends) -> Optimum:
         """Find the least cost.
 
-        Parameters
-        ----------
-        cost : (unknowns,) float
-        matrix : (rows, unknowns) float
-        rows : two of (rows,) float
-            Least and greatest value of each row, infinite where there is none.
-        bounds : two of (unknowns,) float
-            Least and greatest value of each unknown.
-
         Where HiGHS tells nothing of it, unknowns are sought up to `LARGEST`: corners that were
         rounded may ask for forces without end.
 
-        Raises
-        ------
-        Unsolved
-            If HiGHS tells nothing of that either.
+        `cost`, (unknowns,).
+        `matrix`, (rows, unknowns).
+        `rows`, two of (rows,): Least and greatest value of each row, infinite where there is
+            none.
+        `bounds`, two of (unknowns,): Least and greatest value of each unknown.
+        Raises `Unsolved`: If HiGHS tells nothing of that either.
         """
         found = self._solve(cost, matrix, rows, bounds)
         if found is None:
@@ -201,16 +183,10 @@ def choose(
 ) -> Choice:
     """Find the least cost where some of the unknowns have to be whole, by branch and bound.
 
-    Parameters
-    ----------
-    cost, matrix, rows, bounds
-        As of `LinearProgramme.solve`.
-    whole : (unknowns,) bool
-        Which unknowns are whole.
-    gap : float
-        By how much the cost found may be above the least.
-    seconds : float
-        Time after which it ends with the best it has.
+    `cost`, `matrix`, `rows`, `bounds`: As of `LinearProgramme.solve`.
+    `whole`, (unknowns,): Which unknowns are whole.
+    `gap`: By how much the cost found may be above the least.
+    `seconds`: Time after which it ends with the best it has.
     """
     model = _model(cost, sparse.csc_array(matrix), rows, bounds)
     kinds = highspy.HighsVarType

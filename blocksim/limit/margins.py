@@ -43,19 +43,13 @@ class Margins:
     A share is above 1 where the blocks fall, 0 where nothing is needed, and None where no
     share suffices.
 
-    Parameters
-    ----------
-    width : float or None
-        Of the width of every joint, about its middle; loads and friction stay. Its inverse is
-        Heyman's geometrical factor of safety: how much thinner an arch along the same
+    `width`: Of the width of every joint, about its middle; loads and friction stay. Its inverse
+        is Heyman's geometrical factor of safety: how much thinner an arch along the same
         centreline would just contain a line of thrust (Heyman 1969).
-    friction : float or None
-        Of the friction of every joint; where that is unbounded, the coefficient itself.
-    strength : float or None
-        Of width and friction, both at once.
-    forces : (joints, 2, 2) float or None
-        The state of equilibrium that needs no more strength than that, as of `Equilibrium`:
-        the geometrically safest line of thrust.
+    `friction`: Of the friction of every joint; where that is unbounded, the coefficient itself.
+    `strength`: Of width and friction, both at once.
+    `forces`, (joints, 2, 2): The state of equilibrium that needs no more strength than that, as
+        of `Equilibrium`: the geometrically safest line of thrust.
     """
 
     width: float | None
@@ -68,13 +62,9 @@ class Margins:
 class Thrust:
     """A state of equilibrium in which a joint has its least or its greatest thrust.
 
-    Parameters
-    ----------
-    thrust : float
-        Horizontal part of the force through the joint, above 0 where it presses
-        [mean weights]; inf where nothing limits it.
-    forces : (joints, 2, 2) float or None
-        As of `Equilibrium`; None where nothing limits the thrust.
+    `thrust`: Horizontal part of the force through the joint, above 0 where it presses [mean
+        weights]; inf where nothing limits it.
+    `forces`, (joints, 2, 2): As of `Equilibrium`; None where nothing limits the thrust.
     """
 
     thrust: float
@@ -84,10 +74,7 @@ class Thrust:
 def thrust_range(problem: Problem, joint: int) -> tuple[Thrust, Thrust] | None:
     """Find the least and the greatest thrust of a joint, two linear programmes.
 
-    Returns
-    -------
-    least, greatest : Thrust
-        None where there is no equilibrium.
+    Returns `least`, `greatest`: None where there is no equilibrium.
     """
     cones = Cones(problem)
     across = np.zeros((len(problem.assembly.joints), 2, 2))
@@ -159,12 +146,10 @@ def margins(problem: Problem) -> Margins:
 def nearest_mechanism(problem: Problem) -> Array | None:
     """Find how blocks fall, or how they would with hardly less strength than they need.
 
-    Returns
-    -------
-    (blocks, 3) float or None
-        Rates x, y and rotation, as of `Equilibrium`, of blocks that fall. Of blocks that stand
-        those at which all widths and all friction are scaled to a little less than the least
-        share that stands (within `ROUGHLY`); None where a small share would do.
+    Returns (blocks, 3) or None: Rates x, y and rotation, as of `Equilibrium`, of blocks that
+        fall. Of blocks that stand those at which all widths and all friction are scaled to a
+        little less than the least share that stands (within `ROUGHLY`); None where a small
+        share would do.
     """
     search = _Search(problem, LinearProgramme())
     low, high, share, rates = 0.0, 1.0, 1.0, None

@@ -49,19 +49,14 @@ NEAR = 1e-6
 class Equilibrium:
     """Whether forces of equilibrium exist, and how well they fit into the joints.
 
-    Parameters
-    ----------
-    margin : float
-        The least part along any edge of a cone of friction, made as large as it can be
+    `margin`: The least part along any edge of a cone of friction, made as large as it can be
         (at most `SPARE`), over what its joint carries (`Cones.unit`). Below 0 there is no
         equilibrium: contacts would have to pull by that much. -inf where not even that would
         hold the blocks, nan where the solver does not tell.
-    parts : (parts,) float or None
-        Forces with that margin, in parts of `Cones`; None where nothing would hold the blocks.
-    rates : (blocks, 3) float or None
-        Rates x, y and rotation of the mechanism that is nearest.
-    cones : Cones, optional
-        Those of the problem.
+    `parts`, (parts,): Forces with that margin, in parts of `Cones`; None where nothing would
+        hold the blocks.
+    `rates`, (blocks, 3): Rates x, y and rotation of the mechanism that is nearest.
+    `cones`: Those of the problem.
     """
 
     problem: Problem
@@ -183,18 +178,11 @@ def settling(problem: Problem, supports: Array) -> Array | None:
     dual are the forces of equilibrium that do least work on the supports, as the least thrust
     of an arch on spreading supports (Heyman 1966).
 
-    Parameters
-    ----------
-    problem : Problem
-        In its plane, at rest.
-    supports : (supports, 3) float
-        Velocities x, y of each support where it meets the origin of coordinates, and its
-        rate of rotation; lengths in units of the size.
-
-    Returns
-    -------
-    (blocks, 3) float or None
-        Velocities x, y and rotation of the blocks; None where there is no equilibrium.
+    `problem`: In its plane, at rest.
+    `supports`, (supports, 3): Velocities x, y of each support where it meets the origin of
+        coordinates, and its rate of rotation; lengths in units of the size.
+    Returns (blocks, 3) or None: Velocities x, y and rotation of the blocks; None where there is
+        no equilibrium.
     """
     cones = Cones(problem)
     found = extreme(cones, cones.at_supports(supports), problem.applied_forces())
@@ -204,16 +192,9 @@ def settling(problem: Problem, supports: Array) -> Array | None:
 def falling(problem: Problem) -> Array | None:
     """Find the motion that no joint forbids in which the loads do most work.
 
-    Parameters
-    ----------
-    problem : Problem
-        In its plane, at rest.
-
-    Returns
-    -------
-    (blocks, 3) float or None
-        Velocities x, y (in units of the size) and rotation, each at most 1; None where the
-        loads do no work in any.
+    `problem`: In its plane, at rest.
+    Returns (blocks, 3) or None: Velocities x, y (in units of the size) and rotation, each at
+        most 1; None where the loads do no work in any.
     """
     cones = Cones(problem)
     pull = cones.loads(problem.applied_forces())

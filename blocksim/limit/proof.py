@@ -42,22 +42,15 @@ WEDGED = 1e7
 class Proof:
     """A proof that a problem stands or falls.
 
-    Parameters
-    ----------
-    exact : Exact
-        The problem.
-    claim : {"stands", "collapses"}
-    tolerance : Fraction
-        Loads that differ from those given by no more are proved as well (`collapses`) or
-        instead (`stands`, where it is 0 but for structures that touch their limit): force over
-        the weight of each block, moment over that times its reach.
-    forces : list of int or Fraction
-        a, b at both ends of each joint: the force a n + b t, where t leads from its first end
-        to the second [grains] and n is t turned clockwise; empty where it falls.
-    unit : Fraction
-        Of the forces [N].
-    rates : list of three int, for each block
-        x, y of its centre and rotation, in any unit; empty where it stands.
+    `exact`: The problem.
+    `claim`, {"stands", "collapses"}.
+    `tolerance`: Loads that differ from those given by no more are proved as well (`collapses`)
+        or instead (`stands`, where it is 0 but for structures that touch their limit): force
+        over the weight of each block, moment over that times its reach.
+    `forces`: a, b at both ends of each joint: the force a n + b t, where t leads from its first
+        end to the second [grains] and n is t turned clockwise; empty where it falls.
+    `unit`: Of the forces [N].
+    `rates`: x, y of its centre and rotation, in any unit; empty where it stands.
     """
 
     exact: Exact
@@ -102,15 +95,8 @@ def proof_record(proof: Proof) -> dict[str, Any]:
 def proof_of_rest(exact: Exact, forces: Array) -> Proof | None:
     """Prove that a problem stands.
 
-    Parameters
-    ----------
-    forces : (joints, 2, 2) float
-        As of `Equilibrium`, which hardly balance.
-
-    Returns
-    -------
-    Proof or None
-        None where these forces prove nothing.
+    `forces`, (joints, 2, 2): As of `Equilibrium`, which hardly balance.
+    Returns: None where these forces prove nothing.
     """
     problem = exact.problem
     joints = problem.assembly.joint_arrays
@@ -140,15 +126,9 @@ def proof_of_rest(exact: Exact, forces: Array) -> Proof | None:
 def proof_of_fall(exact: Exact, rates: Array) -> Proof | None:
     """Prove that a problem falls.
 
-    Parameters
-    ----------
-    rates : (blocks, 3) float
-        As of `Equilibrium`, of a mechanism that opens joints by more than round-off.
-
-    Returns
-    -------
-    Proof or None
-        None where these rates prove nothing.
+    `rates`, (blocks, 3): As of `Equilibrium`, of a mechanism that opens joints by more than
+        round-off.
+    Returns: None where these rates prove nothing.
     """
     size = exact.problem.assembly.size / float(exact.grain)
     _, whole = whole_numbers((rates * [size, size, 1.0]).ravel().tolist())
@@ -158,18 +138,10 @@ def proof_of_fall(exact: Exact, rates: Array) -> Proof | None:
 def proof_in_rationals(exact: Exact, weights: Array, owner: Sequence[int]) -> Proof | None:
     """Prove that blocks stand or fall by a programme in rational numbers.
 
-    Parameters
-    ----------
-    weights : (blocks,) float
-        What each block carries [mean weights].
-    owner : (blocks,) sequence of int
-        Body of each block; `SUPPORT` where it stays at rest. Blocks of one body move as one:
-        of such only that they fall is proved.
-
-    Returns
-    -------
-    Proof or None
-        None where it is too large, or only wedging by rounding would hold the blocks.
+    `weights`, (blocks,): What each block carries [mean weights].
+    `owner`, (blocks,) sequence of int: Body of each block; `SUPPORT` where it stays at rest.
+        Blocks of one body move as one: of such only that they fall is proved.
+    Returns: None where it is too large, or only wedging by rounding would hold the blocks.
     """
     bodies, unit = Bodies(exact, owner), exact.problem.unit_force
     vertex = bodies.solved(weights * unit)

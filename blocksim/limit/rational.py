@@ -37,10 +37,7 @@ Column = dict[int, int]
 class Bodies:
     """Bodies of blocks that move as one, and what forces at joints do to them.
 
-    Parameters
-    ----------
-    owner : (blocks,) sequence of int
-        Body of each block; `SUPPORT` where it stays at rest.
+    `owner`, (blocks,) sequence of int: Body of each block; `SUPPORT` where it stays at rest.
     """
 
     def __init__(self, exact: Exact, owner: Sequence[int]) -> None:

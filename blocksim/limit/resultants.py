@@ -23,23 +23,16 @@ SIDES = ("left", "right")
 class Resultants:
     """What each joint carries, as it acts on the block after it.
 
-    Parameters
-    ----------
-    normal, friction : (joints,) float
-        Along normal and tangent [N].
-    force : (joints, 2) float
-        x and y [N].
-    point : (joints, 2) float
-        Where the resultant crosses the joint [m]; nan where it carries nothing.
-    width_used : (joints,) float
-        Distance of that point from the middle of the joint, over half its width; 0 where
-        it carries nothing, and for corners, which have no width.
-    stress : (joints,) float
-        Pressure of a rectangular block of stress about that point [Pa]: even from the nearer
-        end of the joint to as far beyond the point. inf at an end, nan of corners, 0 where it
-        carries nothing.
-    friction_used : (joints,) float
-        Friction over the most there can be; 0 where it carries nothing.
+    `normal`, `friction`, (joints,): Along normal and tangent [N].
+    `force`, (joints, 2): x and y [N].
+    `point`, (joints, 2): Where the resultant crosses the joint [m]; nan where it carries
+        nothing.
+    `width_used`, (joints,): Distance of that point from the middle of the joint, over half its
+        width; 0 where it carries nothing, and for corners, which have no width.
+    `stress`, (joints,): Pressure of a rectangular block of stress about that point [Pa]: even
+        from the nearer end of the joint to as far beyond the point. inf at an end, nan of
+        corners, 0 where it carries nothing.
+    `friction_used`, (joints,): Friction over the most there can be; 0 where it carries nothing.
     """
 
     normal: Array
@@ -60,15 +53,10 @@ class Resultants:
 class Reaction:
     """What a support bears of one block.
 
-    Parameters
-    ----------
-    name : str
-        Of the support, and of the block where it bears several.
-    force : (2,) float
-        x and y, as it acts on the blocks [N].
-    point : (2,) float
-        Centre of the pressure of its joints [m]: where its line of action crosses them, if
-        they lie along one line.
+    `name`: Of the support, and of the block where it bears several.
+    `force`, (2,): x and y, as it acts on the blocks [N].
+    `point`, (2,): Centre of the pressure of its joints [m]: where its line of action crosses
+        them, if they lie along one line.
     """
 
     name: str
@@ -127,13 +115,9 @@ def reactions(problem: Problem, forces: Array) -> tuple[Reaction, ...]:
 def in_world(problem: Problem, forces: Array) -> Array:
     """Return forces across and up, as the world has it, where blocks lie on a tilted table.
 
-    Parameters
-    ----------
-    problem : Problem
-        Seen as on the drawing, gravity turned. Where gravity is not as large as weight, what
-        is more of it pushes, and the drawing is upright.
-    forces : (..., 2) float
-        As on the drawing.
+    `problem`: Seen as on the drawing, gravity turned. Where gravity is not as large as weight,
+        what is more of it pushes, and the drawing is upright.
+    `forces`, (..., 2): As on the drawing.
     """
     x, y, _ = problem.gravity.tolist()
     size = math.hypot(x, y)

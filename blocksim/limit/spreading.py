@@ -48,14 +48,10 @@ PUSHED = 1e-7
 class Event:
     """Something that happens at one position of the supports.
 
-    Parameters
-    ----------
-    what : str
-        `hinges` form first, `moves`: one closes and another opens, `snaps`: the same by a fall
-        that is caught, `collapse`, `falls-slides` or `falls-parts`: a fall in which a joint
-        slides or parts, which is not followed to its end; `slides`, `parts`.
-    before, after : Frame
-        The same position, the hinges before and after it.
+    `what`: `hinges` form first, `moves`: one closes and another opens, `snaps`: the same by a
+        fall that is caught, `collapse`, `falls-slides` or `falls-parts`: a fall in which a
+        joint slides or parts, which is not followed to its end; `slides`, `parts`.
+    `before`, `after`: The same position, the hinges before and after it.
     """
 
     what: str
@@ -72,12 +68,8 @@ class Event:
 class Path:
     """What blocks do as their supports move.
 
-    Parameters
-    ----------
-    frames : tuple of Frame
-        From where they were built to the last position of rest.
-    ends : str
-        `collapse`, `range` (the supports moved as far as asked), or `slides`, `parts`: what
+    `frames`: From where they were built to the last position of rest.
+    `ends`: `collapse`, `range` (the supports moved as far as asked), or `slides`, `parts`: what
         joints would do at rest, which is not followed.
     """
 
@@ -102,14 +94,9 @@ class Path:
 def follow(problem: Problem, highest: float, steps: int = 100) -> Path:
     """Move the supports slowly, and follow the blocks.
 
-    Parameters
-    ----------
-    problem : Problem
-        In its plane, with `moves`.
-    highest : float
-        How far the supports move at most [m].
-    steps : int
-        Positions on the way at which events are looked for between.
+    `problem`: In its plane, with `moves`.
+    `highest`: How far the supports move at most [m].
+    `steps`: Positions on the way at which events are looked for between.
     """
     blocks = Displaced(problem)
     frame = blocks.start
@@ -186,14 +173,9 @@ def _where(
 def _falls(blocks: Displaced, frame: Frame) -> tuple[Frame | None, Frame | None, Lost | None]:
     """Let the blocks fall on supports at rest.
 
-    Returns
-    -------
-    caught : Frame or None
-        Where they are held again.
-    fallen : Frame or None
-        The hinges with which they begin to fall.
-    lost : str or None
-        What else a joint does in the fall, which is not followed.
+    Returns `caught`: Where they are held again.
+    Returns `fallen`: The hinges with which they begin to fall.
+    Returns `lost`: What else a joint does in the fall, which is not followed.
     """
     now, first = frame, None
     for push in PUSH:

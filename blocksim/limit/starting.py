@@ -51,17 +51,12 @@ WRONG = 1e-6
 class Start:
     """Whether blocks at rest may start to move.
 
-    Parameters
-    ----------
-    moves : bool or None
-        None where the time did not suffice to tell.
-    accelerations : (blocks, 3) float or None
-        x, y [g] and rotation [g/size] of the motion with the largest power; None without one.
-    forces : (joints, 2, 2) float or None
-        That act in it, as of `Equilibrium`; the friction of a joint is given to its ends in
-        the ratio of their pressures.
-    power : float
-        Of the loads in that motion, over that of the fall without contacts.
+    `moves`: None where the time did not suffice to tell.
+    `accelerations`, (blocks, 3): x, y [g] and rotation [g/size] of the motion with the largest
+        power; None without one.
+    `forces`, (joints, 2, 2): That act in it, as of `Equilibrium`; the friction of a joint is
+        given to its ends in the ratio of their pressures.
+    `power`: Of the loads in that motion, over that of the fall without contacts.
     """
 
     moves: bool | None
@@ -73,17 +68,10 @@ class Start:
 def may_start(problem: Problem, *, seconds: float = SECONDS) -> Start:
     """Tell whether blocks at rest may start to move, by Coulomb's law.
 
-    Parameters
-    ----------
-    problem : Problem
-        In its plane, with bounded friction.
-    seconds : float
-        Time after which it gives up.
-
-    Raises
-    ------
-    InputError
-        If friction is unbounded: what the law says is a limit then, and no choice.
+    `problem`: In its plane, with bounded friction.
+    `seconds`: Time after which it gives up.
+    Raises `InputError`: If friction is unbounded: what the law says is a limit then, and no
+        choice.
     """
     require(bool(np.isfinite(problem.friction).all()), "mu", math.inf, "finite to ask this")
     accelerations = np.zeros(problem.assembly.masses.shape)

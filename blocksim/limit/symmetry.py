@@ -28,14 +28,11 @@ Places = NDArray[np.int64]
 class Mirror:
     """Which block and joint is the mirror image of which, left to right.
 
-    Parameters
-    ----------
-    blocks : (blocks,) int
-    joints : (joints,) int
-    swaps : (joints,) bool
-        Whether the inner end of a joint lies upon the outer end of its image.
-    sense : (joints,) float
-        -1 where the block before a joint is the image of the one after its image.
+    `blocks`, (blocks,).
+    `joints`, (joints,).
+    `swaps`, (joints,): Whether the inner end of a joint lies upon the outer end of its image.
+    `sense`, (joints,): -1 where the block before a joint is the image of the one after its
+        image.
     """
 
     assembly: Assembly
@@ -73,15 +70,9 @@ def symmetric_rates(problem: Problem, rates: Array) -> Array:
 def mirror_of(problem: Problem, *others: Array) -> Mirror | None:
     """Find how a structure, and all that acts on it, is its own mirror image, left to right.
 
-    Parameters
-    ----------
-    *others : (blocks, 3) float
-        Further forces and moments on the blocks, which have to be symmetric as well.
-
-    Returns
-    -------
-    Mirror or None
-        None where blocks, joints, friction or a pull are not symmetric.
+    `others`, (blocks, 3): Further forces and moments on the blocks, which have to be symmetric
+        as well.
+    Returns: None where blocks, joints, friction or a pull are not symmetric.
     """
     assembly, arrays = problem.assembly, problem.assembly.joint_arrays
     centres = assembly.built[:-1, :2]

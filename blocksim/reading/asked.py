@@ -17,10 +17,7 @@ UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "dm": 1e-1, "in": 0.0254, "ft": 0.304
 class Unit:
     """What a unit of the drawing is.
 
-    Parameters
-    ----------
-    said : str
-        What it was taken for, and why.
+    `said`: What it was taken for, and why.
     """
 
     metres: float
@@ -31,14 +28,10 @@ class Unit:
 class Reading:
     """How a drawing is to be read.
 
-    Parameters
-    ----------
-    unit : float or str, optional
-        Metres that a unit of the drawing is, or one of `UNITS`; by default what it says.
-    layers : mapping of str to sequence of str
-        Names of layers by their role: `blocks`, `supports`, `ignored`. Case does not matter.
-    snap : float, optional
-        Ends of lines that are so near to each other are one corner [m]; by default a
+    `unit`: Metres that a unit of the drawing is, or one of `UNITS`; by default what it says.
+    `layers`: Names of layers by their role: `blocks`, `supports`, `ignored`. Case does not
+        matter.
+    `snap`: Ends of lines that are so near to each other are one corner [m]; by default a
         ten-thousandth of the shorter line.
     """
 

@@ -58,15 +58,8 @@ def is_compas(data: object) -> bool:
 def read_compas(data: Table) -> dict[str, Any]:
     """Read an assembly: in the plane where it is planar, else in space.
 
-    Parameters
-    ----------
-    data : mapping
-        What the JSON file says.
-
-    Returns
-    -------
-    dict
-        As of a structure file, without friction. Blocks have the names of their nodes.
+    `data`: What the JSON file says.
+    Returns: As of a structure file, without friction. Blocks have the names of their nodes.
     """
     try:
         meshes = [_mesh(*each) for each in islice(_nodes(data), MOST_BLOCKS + 1)]

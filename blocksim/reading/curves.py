@@ -31,14 +31,9 @@ Points = NDArray[np.complex128]
 class Chords:
     """A curve as chords.
 
-    Parameters
-    ----------
-    corners : list of (x, y)
-        Between its ends.
-    stray : float
-        How far chords are off the curve, at most.
-    wrong : str or None
-        Why it cannot be drawn as chords of the same area.
+    `corners`, list of (x, y): Between its ends.
+    `stray`: How far chords are off the curve, at most.
+    `wrong`: Why it cannot be drawn as chords of the same area.
     """
 
     corners: Corners
@@ -52,10 +47,8 @@ LINE = Chords([])
 def arc(start: complex, end: complex, bulge: float) -> Chords:
     """Return a part of a circle as chords.
 
-    Parameters
-    ----------
-    bulge : float
-        Tangent of a quarter of its angle, above 0 where it turns counter-clockwise (as of DXF).
+    `bulge`: Tangent of a quarter of its angle, above 0 where it turns counter-clockwise (as of
+        DXF).
     """
     chord = end - start
     if abs(bulge) < STRAIGHT or not chord:
@@ -108,13 +101,10 @@ def ellipse(
 ) -> Chords:  # fmt: skip
     """Return a part of an ellipse as chords, as `A` of SVG gives it.
 
-    Parameters
-    ----------
-    radii : (float, float)
-    turned : float
-        Angle of the first radius from x [rad].
-    large, rising : bool
-        Whether it is the longer one of two arcs, and the one on which the angle grows.
+    `radii`, (float, float).
+    `turned`: Angle of the first radius from x [rad].
+    `large`, `rising`: Whether it is the longer one of two arcs, and the one on which the angle
+        grows.
     """
     rx, ry = map(abs, radii)
     if not (rx and ry) or start == end:

@@ -43,22 +43,14 @@ OUTLINE = (
 class Shape:
     """Something drawn.
 
-    Parameters
-    ----------
-    what : str
-        What it is called in its format.
-    corners : list of (x, y)
-        In units of the drawing, y upwards; of what is no line, where it is, as far as known.
-    closed : bool
-        Whether it is an outline; if not, it may be a part of one.
-    wrong : str, optional
-        Why it cannot be read: said where it is on a layer that is read.
-    words : bool
-        Whether it is text or a dimension, which bears nothing.
-    step : float
-        To which its corners were rounded, in units of the drawing.
-    stray : float
-        How far chords are off the curves they stand for.
+    `what`: What it is called in its format.
+    `corners`, list of (x, y): In units of the drawing, y upwards; of what is no line, where it
+        is, as far as known.
+    `closed`: Whether it is an outline; if not, it may be a part of one.
+    `wrong`: Why it cannot be read: said where it is on a layer that is read.
+    `words`: Whether it is text or a dimension, which bears nothing.
+    `step`: To which its corners were rounded, in units of the drawing.
+    `stray`: How far chords are off the curves they stand for.
     """
 
     what: str
@@ -105,18 +97,11 @@ class Refused:
 class Drawing:
     """What was found on a drawing.
 
-    Parameters
-    ----------
-    path : Path
-        Which names the structure.
-    unit : Unit or None
-        None where the drawing has none, and none was asked for.
-    blocks : tuple of (Shape, bool)
-        Outlines, and whether they stay where they are.
-    left : str
-        What is on other layers, in words.
-    moved : float
-        How far ends of lines were moved to meet, in units of the drawing.
+    `path`: Which names the structure.
+    `unit`: None where the drawing has none, and none was asked for.
+    `blocks`, tuple of (Shape, bool): Outlines, and whether they stay where they are.
+    `left`: What is on other layers, in words.
+    `moved`: How far ends of lines were moved to meet, in units of the drawing.
     """
 
     path: Path

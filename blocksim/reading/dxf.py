@@ -39,15 +39,8 @@ FLAT = 1e-9
 def read_dxf(path: AnyPath, reading: Reading) -> Drawing:
     """Read outlines, lines and arcs of the model space, and of the blocks inserted there.
 
-    Parameters
-    ----------
-    reading : Reading
-        Its unit is what $INSUNITS says by default.
-
-    Returns
-    -------
-    Drawing
-        Blocks are named by their handles.
+    `reading`: Its unit is what $INSUNITS says by default.
+    Returns: Blocks are named by their handles.
     """
     require_file(path, "drawing", "an existing .dxf file", LARGEST_DRAWING)
     require_library("ezdxf", "DXF", "dxf")

@@ -62,18 +62,10 @@ def loops_of(
 ) -> tuple[list[Loop], list[Open]]:
     """Find the outlines that lines make.
 
-    Parameters
-    ----------
-    paths : sequence of list of (x, y)
-        Lines, arcs as chords, open polylines.
-    snap : float, optional
-        Ends that are so near to each other are one corner; by default `MEETS`.
-
-    Returns
-    -------
-    list of Open
-        Lines that make none: all of those with an end that meets no other, or of a group of
-        lines of which it cannot be told where its blocks are.
+    `paths`, sequence of list of (x, y): Lines, arcs as chords, open polylines.
+    `snap`: Ends that are so near to each other are one corner; by default `MEETS`.
+    Returns: Lines that make none: all of those with an end that meets no other, or of a group
+        of lines of which it cannot be told where its blocks are.
     """
     ends = np.array([(path[0], path[-1]) for path in paths])
     lengths = np.array([_length(path) for path in paths])

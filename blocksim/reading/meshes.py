@@ -39,18 +39,10 @@ Facets = NDArray[np.int64]
 def read_mesh(path: AnyPath, reading: Reading) -> dict[str, Any]:
     """Read a mesh of closed bodies, z upwards; of GLB, whose y is upwards, turned.
 
-    Parameters
-    ----------
-    path : str or path
-        Ends in .obj, .stl, .ply or .glb.
-    reading : Reading
-        Its unit, where the file says none; names of objects as layers. An object of the name
-        `supports`, or of one that is named for it, stays where it is.
-
-    Returns
-    -------
-    dict
-        As of a structure file in space, without friction.
+    `path`: Ends in .obj, .stl, .ply or .glb.
+    `reading`: Its unit, where the file says none; names of objects as layers. An object of the
+        name `supports`, or of one that is named for it, stays where it is.
+    Returns: As of a structure file in space, without friction.
     """
     ending = Path(path).suffix.lower()[1:]
     content = read_file(path, "mesh", f"an existing .{ending} file", LARGEST_MESH)

@@ -62,15 +62,8 @@ def read_svg(path: AnyPath, reading: Reading) -> Drawing:
     Layers are groups, or outlines themselves, with the name of the layer as id, class or
     Inkscape's label; the nearest one counts.
 
-    Parameters
-    ----------
-    reading : Reading
-        Its unit is by default what width and viewBox say in mm, cm or in.
-
-    Returns
-    -------
-    Drawing
-        Blocks are named by their ids.
+    `reading`: Its unit is by default what width and viewBox say in mm, cm or in.
+    Returns: Blocks are named by their ids.
     """
     text = read_file(path, "drawing", "an existing .svg file", LARGEST_DRAWING)
     elements = _Elements()

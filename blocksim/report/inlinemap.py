@@ -42,22 +42,12 @@ def inline_map(svg: bytes, names: Mapping[int, str]) -> tuple[str, dict[str, str
 def inline_picture(svg: bytes, name: str, role: str, anchor: str) -> tuple[str, dict[str, str]]:
     """Turn a picture drawn for paper into a part of the page.
 
-    Parameters
-    ----------
-    svg : bytes
-        A file of SVG with its colours as #rrggbb in `style` attributes.
-    name : str
-        Class of the element.
-    role, anchor : str
-        What has the id `anchor-words` describes it. Ids within it begin with the anchor, where
-        that is another than the name: no two on a page are the same.
-
-    Returns
-    -------
-    text : str
-        An element, with each colour #rrggbb as the variable --name-rrggbb.
-    dark : dict of str to str
-        Each colour rrggbb, and what it is in the dark.
+    `svg`: A file of SVG with its colours as #rrggbb in `style` attributes.
+    `name`: Class of the element.
+    `role`, `anchor`: What has the id `anchor-words` describes it. Ids within it begin with the
+        anchor, where that is another than the name: no two on a page are the same.
+    Returns `text`: An element, with each colour #rrggbb as the variable --name-rrggbb.
+    Returns `dark`: Each colour rrggbb, and what it is in the dark.
     """
     text = svg.decode()
     text = NOT_OURS.sub("", text[text.index("<svg") :])

@@ -72,24 +72,14 @@ class Arrow(NamedTuple):
 class Drawing:
     """Everything a page needs to draw blocks and to move them.
 
-    Parameters
-    ----------
-    box : str
-        The drawing's viewBox.
-    rest : tuple of str
-        Outlines at rest, of what moves.
-    supports : tuple of Mark
-        Active joints' faces that stay.
-    thrust : tuple of str
-        Lines of thrust at rest.
-    arrows : tuple of Arrow
-        Forces besides gravity, and gravity where it does not pull straight down.
-    dot : float
-        Radius of the mark of a hinge.
-    frames : str
-        JSON: for each pose, for each piece, its shift x, y and turn [deg].
-    enlarged : float or None
-        How many times larger than it is the motion is drawn; None where none is.
+    `box`: The drawing's viewBox.
+    `rest`: Outlines at rest, of what moves.
+    `supports`: Active joints' faces that stay.
+    `thrust`: Lines of thrust at rest.
+    `arrows`: Forces besides gravity, and gravity where it does not pull straight down.
+    `dot`: Radius of the mark of a hinge.
+    `frames`: JSON: for each pose, for each piece, its shift x, y and turn [deg].
+    `enlarged`: How many times larger than it is the motion is drawn; None where none is.
     """
 
     box: str

@@ -27,18 +27,10 @@ def write_paper(
 ) -> tuple[list[Path], float]:
     """Draw figures of the paper, and write its numbers beside them.
 
-    Parameters
-    ----------
-    figures : sequence of int, optional
-        Their numbers; all 25 if left out.
-    kind : {"svg", "png"}
-
-    Returns
-    -------
-    paths : list of Path
-        The page first.
-    worst : float
-        Largest relative difference of a number from the printed one.
+    `figures`: Their numbers; all 25 if left out.
+    `kind`, {"svg", "png"}.
+    Returns `paths`: The page first.
+    Returns `worst`: Largest relative difference of a number from the printed one.
     """
     folder = Path(folder)
     make_folder(folder)

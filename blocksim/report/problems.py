@@ -129,11 +129,8 @@ def size_lines(problem: Problem[Any]) -> list[str]:
 def arch_size_lines(arch: Arch, mu: float | None = None, at: At | None = None) -> list[str]:
     """Return the dimensions of an arch in words.
 
-    Parameters
-    ----------
-    at : str, optional
-        The line that was measured; the intrados if none was. An arch with a radius of 1
-        of which none was measured is told in radii.
+    `at`: The line that was measured; the intrados if none was. An arch with a radius of 1 of
+        which none was measured is told in radii.
     """
     metric = is_metric(arch, at)
     unit, at = ("m" if metric else "r"), at or "intrados"

@@ -62,21 +62,11 @@ def structure_page(
 ) -> str:
     """Write the report on one structure.
 
-    Parameters
-    ----------
-    mode : Mode or None
-        In which an arch falls.
-    command, settings : str
-        The command line and the settings it was made with, to be printed.
-    titles : Titles, optional
-        What the title block says.
-    cases : Cases, optional
-        Those among which the answer is that of the governing one.
-
-    Returns
-    -------
-    str
-        HTML that loads nothing.
+    `mode`: In which an arch falls.
+    `command`, `settings`: The command line and the settings it was made with, to be printed.
+    `titles`: What the title block says.
+    `cases`: Those among which the answer is that of the governing one.
+    Returns: HTML that loads nothing.
     """
     sheet = answer_sheet(answer, titles)
     template, fall = environment().get_template("sheet.html"), _fall(answer)

@@ -77,12 +77,8 @@ def write_results(
 ) -> list[Path]:
     """Write report.html, validate.json, validate.csv, map.png and map.svg into a folder.
 
-    Parameters
-    ----------
-    unasked : sequence of Unasked
-        What was not asked, and why; said in the page and in the JSON.
-    structures : sequence of StructureRow
-        Of the second part; where there are some, structures.csv is written, too.
+    `unasked`: What was not asked, and why; said in the page and in the JSON.
+    `structures`: Of the second part; where there are some, structures.csv is written, too.
     """
     records = [as_record(row) for row in rows]
     built = [structure_record(row) for row in structures]

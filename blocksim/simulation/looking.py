@@ -28,19 +28,10 @@ SURE = 1e-4
 class Looking:
     """A problem as it is looked at where blocks are held, and where they move.
 
-    Parameters
-    ----------
-    asked : Problem, optional
-        Whose forces are asked for, where the engine knows other blocks.
-
-    Attributes
-    ----------
-    asks : bool
-        Whether limit analysis can be asked about it.
-    far : float
-        How far the farthest block is from the origin [size].
-    slips : float
-        Slip above which a motion slides.
+    `asked`: Whose forces are asked for, where the engine knows other blocks.
+    `asks`: Whether limit analysis can be asked about it.
+    `far`: How far the farthest block is from the origin [size].
+    `slips`: Slip above which a motion slides.
     """
 
     def __init__(self, problem: Problem[Any], asked: Problem[Any] | None = None) -> None:

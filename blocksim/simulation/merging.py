@@ -69,16 +69,10 @@ MOVES = 1e-6
 class Merging:
     """Blocks of a problem, and which of them are one body.
 
-    Parameters
-    ----------
-    whole : Problem
-        Of all blocks, in its plane.
-    owner : (blocks,) int
-        The body each block is part of; bodies are numbered from 0.
-    rounds : int
-        How often the guess was wrong before.
-    forces : (joints, 2, 2) float or None
-        Of all joints, to begin with.
+    `whole`: Of all blocks, in its plane.
+    `owner`, (blocks,): The body each block is part of; bodies are numbered from 0.
+    `rounds`: How often the guess was wrong before.
+    `forces`, (joints, 2, 2): Of all joints, to begin with.
     """
 
     whole: Problem
@@ -175,11 +169,8 @@ class Merging:
     ) -> tuple[bool, Array | None]:
         """Tell whether joints within bodies can bear what is left to them; see `Reduced`.
 
-        Returns
-        -------
-        rates : (blocks, 3) float or None
-            Those of a mechanism with which blocks would part; None where not even joints that
-            pull would hold them.
+        Returns `rates`, (blocks, 3) or None: Those of a mechanism with which blocks would part;
+            None where not even joints that pull would hold them.
         """
         if not self._inside.any():
             return True, None

@@ -66,12 +66,8 @@ FAR = 0.02
 class Motion(Generic[Blocks]):
     """Outcome of a moving run.
 
-    Parameters
-    ----------
-    reason : str
-        The evidence in words.
-    overlap : float
-        Deepest overlap of blocks, as a share of the motion of their joints.
+    `reason`: The evidence in words.
+    `overlap`: Deepest overlap of blocks, as a share of the motion of their joints.
     """
 
     verdict: Verdict
@@ -97,16 +93,10 @@ def moving_run(
 ) -> Motion[Blocks]:
     """Let an arch go that the onset test has held, and record it.
 
-    Parameters
-    ----------
-    held : World
-        Built from it and at rest, impulses converged as far as they go.
-    repeat : callable
-        Holds another world of it likewise, if the run must be repeated.
-    rests : bool
-        Whether the onset test has found rest, and no motion besides.
-    until : float, optional
-        Time to record for [sqrt(r/g)], or until what has collapsed lies still; by default
+    `held`: Built from it and at rest, impulses converged as far as they go.
+    `repeat`: Holds another world of it likewise, if the run must be repeated.
+    `rests`: Whether the onset test has found rest, and no motion besides.
+    `until`: Time to record for [sqrt(r/g)], or until what has collapsed lies still; by default
         the run stops as soon as its verdict is certain.
     """
     left = simulation.settings.repeats

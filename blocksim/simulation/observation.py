@@ -25,10 +25,7 @@ from blocksim.simulation.verdict import Evidence, Verdict, aside, reason_of
 class Held(Generic[Blocks]):
     """Blocks in an engine after the onset test: at rest, and ready to be let go once.
 
-    Parameters
-    ----------
-    splits : int
-        Joints of a reduction that turned out to move.
+    `splits`: Joints of a reduction that turned out to move.
     """
 
     simulation: Simulation[Blocks]
@@ -83,21 +80,17 @@ class Held(Generic[Blocks]):
 class Observation:
     """What an engine showed of one problem.
 
-    Parameters
-    ----------
-    verdict : Verdict
-        Undecided unless onset test and moving run agree, or only the first was asked for.
-    motion : Motion or None
-        None where the blocks were not let go.
-    joints, joints_in_motion : tuple of ObservedJoint
-        What joints do as a collapse starts, by the onset test, and a little later, in the
-        moving run; closed where the blocks stand. Empty where gravity leans out of the
-        plane and they collapse: their states are those of motion in the plane; and in space.
-        The second is empty where there was no moving run, too.
-    rates : (blocks, 3 or 6) float or None
-        Velocities in proportion to those with which a collapse starts, columns as poses.
-    blocks, splits : int
-        Blocks that were simulated, and joints that a reduction had to split again.
+    `verdict`: Undecided unless onset test and moving run agree, or only the first was asked
+        for.
+    `motion`: None where the blocks were not let go.
+    `joints`, `joints_in_motion`: What joints do as a collapse starts, by the onset test, and a
+        little later, in the moving run; closed where the blocks stand. Empty where gravity
+        leans out of the plane and they collapse: their states are those of motion in the plane;
+        and in space. The second is empty where there was no moving run, too.
+    `rates`, (blocks, 3 or 6): Velocities in proportion to those with which a collapse starts,
+        columns as poses.
+    `blocks`, `splits`: Blocks that were simulated, and joints that a reduction had to split
+        again.
     """
 
     verdict: Verdict
@@ -142,13 +135,9 @@ def observe(
 ) -> Observation:
     """Put a problem into an engine: onset test, then, if asked for, the moving run.
 
-    Parameters
-    ----------
-    moving : bool
-        Let the blocks go after the onset test. They are not let go where that test is
+    `moving`: Let the blocks go after the onset test. They are not let go where that test is
         undecided: unbalanced impulses would throw them.
-    reduction : Reduced, optional
-        Simulate these blocks in place of all.
+    `reduction`: Simulate these blocks in place of all.
     """
     held = hold(problem, engine, settings=settings, reduction=reduction, progress=progress)
     return conclude(held, moving=moving, progress=progress)

@@ -77,24 +77,16 @@ GROWTH = 1.5
 class Onset:
     """Outcome of the onset test.
 
-    Parameters
-    ----------
-    acceleration : float
-        Largest acceleration of any corner [g].
-    mechanism : (blocks, 3) float
-        Poses after a small displacement (`PROBE`) along the accelerations.
-    sweeps : int
-        Sweeps spent.
-    forces : (joints, 2, 2) float or None
-        Forces it was given to begin with (`blocksim.limit`), if it was.
-    may_slide : bool
-        Whether forces of equilibrium exist, and begun with nothing it slides.
-    may_rest : bool
-        Whether it starts to move where forces of equilibrium exist.
-    lacks_friction : bool
-        Whether it starts to move with less friction than was asked for, and may rest with that.
-    too_far : bool
-        Whether it was built too far from the origin to be looked at.
+    `acceleration`: Largest acceleration of any corner [g].
+    `mechanism`, (blocks, 3): Poses after a small displacement (`PROBE`) along the
+        accelerations.
+    `sweeps`: Sweeps spent.
+    `forces`, (joints, 2, 2): Forces it was given to begin with (`blocksim.limit`), if it was.
+    `may_slide`: Whether forces of equilibrium exist, and begun with nothing it slides.
+    `may_rest`: Whether it starts to move where forces of equilibrium exist.
+    `lacks_friction`: Whether it starts to move with less friction than was asked for, and may
+        rest with that.
+    `too_far`: Whether it was built too far from the origin to be looked at.
     """
 
     verdict: Verdict
@@ -145,15 +137,8 @@ class Onset:
 def onset(world: World, simulation: Simulation[Any], progress: Progress = silent) -> Onset:
     """Run the onset test on a world whose blocks are at rest where they were built.
 
-    Parameters
-    ----------
-    simulation : Simulation
-        Whose world it is, with what counts as at rest, and the most sweeps to spend.
-
-    Returns
-    -------
-    Onset
-        The world keeps its impulses and can be released from there.
+    `simulation`: Whose world it is, with what counts as at rest, and the most sweeps to spend.
+    Returns: The world keeps its impulses and can be released from there.
     """
     engine, settings, reduction = simulation.engine, simulation.settings, simulation.reduction
     problem, built = simulation.taken, world.poses()

@@ -205,12 +205,8 @@ def read_recording(
 ) -> Recording[Any]:
     """Read a recording and check that it is one.
 
-    Parameters
-    ----------
-    renew : callable, optional
-        Makes the header of an older format one of today's.
-    maker_of : callable, optional
-        As of `from_record`.
+    `renew`: Makes the header of an older format one of today's.
+    `maker_of`: As of `from_record`.
     """
     where = os.fspath(path)
     try:

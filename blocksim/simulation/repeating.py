@@ -33,12 +33,9 @@ def estimated(
 ) -> Recording[Blocks]:
     """Return a recording with the errors that another run shows.
 
-    Parameters
-    ----------
-    poses : sequence of (blocks, 3 or 6) float
-        Of the other run, from the release on.
-    frames : sequence of int, or slice
-        Frames of the recording at the same times; those beyond the other run do not count.
+    `poses`, sequence of (blocks, 3 or 6): Of the other run, from the release on.
+    `frames`: Frames of the recording at the same times; those beyond the other run do not
+        count.
     """
     mine, times = (each[frames][: len(poses)] for each in (recording.poses, recording.times))
     other = np.array(poses[: len(mine)])
@@ -85,10 +82,7 @@ def compared(
     Where these pass `KNOWN` blocks are let go at half the step, too. If that agrees, it is
     what is returned.
 
-    Parameters
-    ----------
-    world_at : callable
-        Gives the same blocks, at rest, in an engine whose steps are so long.
+    `world_at`: Gives the same blocks, at rest, in an engine whose steps are so long.
     """
     if len(recording.times) < 2:
         return recording

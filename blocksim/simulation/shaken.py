@@ -49,16 +49,11 @@ TURNED, SHUT = 1e-4, 1e-7
 class Rocking:
     """How blocks of a recording turned.
 
-    Parameters
-    ----------
-    rotation : float
-        Largest rotation of any block at any time [rad].
-    block : int
-        Which one that was.
-    impact : float or None
-        When a joint that had opened closed first [sqrt(size/g)]; None where none did.
-    off, late : float or None
-        How far off rotation and impact may be, by a run at another step; None without one.
+    `rotation`: Largest rotation of any block at any time [rad].
+    `block`: Which one that was.
+    `impact`: When a joint that had opened closed first [sqrt(size/g)]; None where none did.
+    `off`, `late`: How far off rotation and impact may be, by a run at another step; None
+        without one.
     """
 
     rotation: float
@@ -72,10 +67,7 @@ class Rocking:
 class Shaken:
     """What became of blocks on ground that shakes.
 
-    Parameters
-    ----------
-    moved : float
-        Largest displacement of any corner at the end [size].
+    `moved`: Largest displacement of any corner at the end [size].
     """
 
     verdict: Verdict
@@ -107,18 +99,11 @@ def shake(
     differ by more than `KNOWN` of it, they are shaken at half the step as well, which is what
     is returned. What is said is what both finer runs say; `undecided` if they differ.
 
-    Parameters
-    ----------
-    problem : Problem
-        With `shaking` or `velocities`.
-    engine : str or Engine
-        One that `shakes`.
-    until : float, optional
-        Time to record for [sqrt(size/g)], or until all lies still.
-    whole : bool
-        Go on where a block has sunk by `SUNK`, and the verdict is certain.
-    repeat : bool
-        Without, they are shaken once.
+    `problem`: With `shaking` or `velocities`.
+    `engine`: One that `shakes`.
+    `until`: Time to record for [sqrt(size/g)], or until all lies still.
+    `whole`: Go on where a block has sunk by `SUNK`, and the verdict is certain.
+    `repeat`: Without, they are shaken once.
     """
     step = Simulation.of(problem, engine, settings=settings).settings.step
     stride = max(1, round(FRAME / step))

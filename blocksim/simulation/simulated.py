@@ -124,15 +124,10 @@ class Reduced(Protocol):
     ) -> Reduced | None:
         """Return this where it stands for all blocks, else what does; None: all blocks.
 
-        Parameters
-        ----------
-        first : Onset
-            What was seen.
-        resultants : (joints, 3) float
-            What `ReducedWorld.resultants` says.
-        simulation : Simulation
-            With this; `still` of its settings is the force beyond the strength of a joint that
-            counts as none [mean weights].
+        `first`: What was seen.
+        `resultants`, (joints, 3): What `ReducedWorld.resultants` says.
+        `simulation`: With this; `still` of its settings is the force beyond the strength of a
+            joint that counts as none [mean weights].
         """
         ...
 
@@ -140,10 +135,7 @@ class Reduced(Protocol):
 class ReducedWorld:
     """The world of all blocks, of which an engine knows fewer.
 
-    Parameters
-    ----------
-    world : World
-        Of the blocks simulated.
+    `world`: Of the blocks simulated.
     """
 
     def __init__(self, world: World, reduction: Reduced) -> None:
@@ -178,12 +170,8 @@ class ReducedWorld:
 class Simulation(Generic[Blocks]):
     """A problem, in the plane or in space, an engine and its settings.
 
-    Parameters
-    ----------
-    given : mapping of str to float
-        Those settings that do not follow the engine's rule.
-    reduction : Reduced or None
-        What the engine is given in place of all blocks, in the plane.
+    `given`: Those settings that do not follow the engine's rule.
+    `reduction`: What the engine is given in place of all blocks, in the plane.
     """
 
     problem: Problem[Blocks]

@@ -41,34 +41,23 @@ def answered(
 class Validation:
     """One scenario by one engine, against what is known.
 
-    Parameters
-    ----------
-    modes_published : tuple of Mode
-        Of the continuous arch: several on a line of the map.
-    modes_theory : tuple of Mode
-        The same by theory: all that coincide there, so that none of them is wrong.
-    eta_low, eta_high : float or None
-        The bracket.
-    error : float or None
-        Centre of the bracket over `eta_limit`, less 1.
-    mode_observed : Mode or None
-        Of the mechanism it starts with, at the bracket's lower end; where the claim is a
-        verdict, of the arch as it is.
-    mode_in_motion : Mode or None
-        In the moving run 1 % below the bracket, where more than the weakest mode may move.
-    below, above : Verdict or None
-        1 % below and above the bracket, by onset test and moving run; None where not tried.
-    verdict_expected, verdict : Verdict or None
-        Of the arch as the scenario has it, where its claim is that and not the bracket.
-    miss : str
-        What disagrees; empty where nothing does.
-    note : str
-        Why, or what to keep in mind.
-    title, source : str
-        Of the scenario.
-    recording : Recording or None
-        The moving run 1 % below the bracket; None where there was none, or the claim is
-        a verdict.
+    `modes_published`: Of the continuous arch: several on a line of the map.
+    `modes_theory`: The same by theory: all that coincide there, so that none of them is wrong.
+    `eta_low`, `eta_high`: The bracket.
+    `error`: Centre of the bracket over `eta_limit`, less 1.
+    `mode_observed`: Of the mechanism it starts with, at the bracket's lower end; where the
+        claim is a verdict, of the arch as it is.
+    `mode_in_motion`: In the moving run 1 % below the bracket, where more than the weakest mode
+        may move.
+    `below`, `above`: 1 % below and above the bracket, by onset test and moving run; None where
+        not tried.
+    `verdict_expected`, `verdict`: Of the arch as the scenario has it, where its claim is that
+        and not the bracket.
+    `miss`: What disagrees; empty where nothing does.
+    `note`: Why, or what to keep in mind.
+    `title`, `source`: Of the scenario.
+    `recording`: The moving run 1 % below the bracket; None where there was none, or the claim
+        is a verdict.
     """
 
     scenario: str

@@ -50,22 +50,14 @@ class ChartArch:
 class Point:
     """One bracket, measured.
 
-    Parameters
-    ----------
-    knob : str
-        What was set, of `REFINEMENTS`.
-    value : float
-        To what.
-    error : float
-        Of the bracket's farther end, relative; inf where there is no bracket.
-    low, high : float or None
-        The bracket's ends, thickness over radius; None where there is none, or not told.
-    undecided : int
-        Ratios without an answer.
-    work : float
-        Contacts solved, times the sweeps over them.
-    processor_s, wall_s : tuple of float
-        Time of the processor and by the clock [s], of every repeat.
+    `knob`: What was set, of `REFINEMENTS`.
+    `value`: To what.
+    `error`: Of the bracket's farther end, relative; inf where there is no bracket.
+    `low`, `high`: The bracket's ends, thickness over radius; None where there is none, or not
+        told.
+    `undecided`: Ratios without an answer.
+    `work`: Contacts solved, times the sweeps over them.
+    `processor_s`, `wall_s`: Time of the processor and by the clock [s], of every repeat.
     """
 
     case: str

@@ -101,17 +101,9 @@ def look(arch: Arch, mu: float, method: str, knob: str, value: float) -> Look:
 def let_go(simulation: Simulation, moved: float = MOVED, until: float = QUIET) -> Look:
     """Let an arch go that nothing has held before, and see whether it moves.
 
-    Parameters
-    ----------
-    moved : float
-        Displacement from which it counts as collapsing [size].
-    until : float
-        Time it is watched for [sqrt(size/g)].
-
-    Returns
-    -------
-    Look
-        Undecided only where the engine itself tells that its contacts were not solved.
+    `moved`: Displacement from which it counts as collapsing [size].
+    `until`: Time it is watched for [sqrt(size/g)].
+    Returns: Undecided only where the engine itself tells that its contacts were not solved.
     """
     world, settings = simulation.world(), simulation.settings
     built, taken = world.poses(), 0

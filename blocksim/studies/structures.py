@@ -53,18 +53,10 @@ def validate_structures(
 ) -> list[StructureRow]:
     """Ask limit analysis and engines about structures and compare.
 
-    Parameters
-    ----------
-    engines : iterable of str, optional
-        Those usual for structures, as far as they are installed, if left out.
+    `engines`: Those usual for structures, as far as they are installed, if left out.
         `unasked_structures` tells what each is not asked.
-    workers : int
-        Processes; 1 runs in this one.
-
-    Returns
-    -------
-    list of StructureRow
-        In the order of structures, what is known of them, then methods, `limit` first.
+    `workers`: Processes; 1 runs in this one.
+    Returns: In the order of structures, what is known of them, then methods, `limit` first.
     """
     names = tuple(dict.fromkeys(usual("structures") if engines is None else engines))
     for name in names:

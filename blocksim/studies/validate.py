@@ -68,18 +68,10 @@ def validate(
 ) -> list[Validation]:
     """Bracket every scenario with every engine and compare.
 
-    Parameters
-    ----------
-    engines : iterable of str, optional
-        By default all that are `installed`. Scenarios whose gravity leans out of the
+    `engines`: By default all that are `installed`. Scenarios whose gravity leans out of the
         plane are for those that see that; `unasked` tells what is left out.
-    workers : int
-        Processes; 1 runs in this one.
-
-    Returns
-    -------
-    list of Validation
-        In the order of scenarios, then engines, whatever finishes first.
+    `workers`: Processes; 1 runs in this one.
+    Returns: In the order of scenarios, then engines, whatever finishes first.
     """
     names = installed() if engines is None else tuple(dict.fromkeys(engines))
     for name in names:
@@ -101,10 +93,7 @@ def _asked_of(job: tuple[Scenario, str]) -> Validation:
 def validate_one(scenario: Scenario, engine: str, tol: float | None = None) -> Validation:
     """Ask one scenario's question of one engine and compare.
 
-    Parameters
-    ----------
-    tol : float, optional
-        Relative width of the bracket; by default what the engine says (`validated_to`).
+    `tol`: Relative width of the bracket; by default what the engine says (`validated_to`).
     """
     if scenario.expected_verdict is not None and scenario.has_thickness:
         return _judged(scenario, engine)

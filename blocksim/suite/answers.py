@@ -44,13 +44,9 @@ class Head:
 class Answer:
     """What was said of one scene.
 
-    Parameters
-    ----------
-    verdict : {"stands", "falls", "open"} or None
-        None where poses say it.
-    poses : (frames, bodies, 3 or 7) float or None
-    seconds : float
-        That the engine took.
+    `verdict`, {"stands", "falls", "open"} or None: None where poses say it.
+    `poses`, (frames, bodies, 3 or 7).
+    `seconds`: That the engine took.
     """
 
     scene: str
@@ -62,12 +58,8 @@ class Answer:
 def read_answers(path: AnyPath, scenes: Mapping[str, Scene]) -> tuple[Head, dict[str, Answer]]:
     """Read a file of answers.
 
-    Parameters
-    ----------
-    path : str or path
-        Of JSON lines: who answers, then a line a scene.
-    scenes : mapping of str to Scene
-        Those that may be answered.
+    `path`: Of JSON lines: who answers, then a line a scene.
+    `scenes`: Those that may be answered.
     """
     said, found = str(path), dict[str, Answer]()
     with opened(path, "answers", "a file of JSON lines", LARGEST) as file:

@@ -185,10 +185,7 @@ def chosen(levels: Collection[float] = (), within: Collection[str] = ()) -> Iter
 def export(folder: AnyPath, scenes: Iterator[Scene]) -> dict[str, int]:
     """Write scenes, their schemas and the page that explains them.
 
-    Returns
-    -------
-    dict
-        Number of files of each kind.
+    Returns: Number of files of each kind.
     """
     folder, count = Path(folder), dict.fromkeys(WRITERS, 0)
     for name in WRITERS:

@@ -28,23 +28,15 @@ MOST = 0.9
 class Row:
     """What became of one scene.
 
-    Parameters
-    ----------
-    level : float or None
-        [%]; None where motion is asked for.
-    answer : {"right", "false", "open"}
-        Of motion: right where the error is known.
-    stands : bool or None
-        What is true.
-    drift : float or None
-        Largest way of a corner at the end, in sizes of the mean body, of what stands.
-    gain : float or None
-        Most by which the mean weight rose above the start, in the same.
-    asymmetry : float or None
-        Largest distance of a corner from the mirror image of another at the end, in the same.
-    error : float or None
-        Of motion: largest distance of a corner from where it should be, over the largest way
-        of one.
+    `level`: [%]; None where motion is asked for.
+    `answer`, {"right", "false", "open"}: Of motion: right where the error is known.
+    `stands`: What is true.
+    `drift`: Largest way of a corner at the end, in sizes of the mean body, of what stands.
+    `gain`: Most by which the mean weight rose above the start, in the same.
+    `asymmetry`: Largest distance of a corner from the mirror image of another at the end, in
+        the same.
+    `error`: Of motion: largest distance of a corner from where it should be, over the largest
+        way of one.
     """
 
     scene: str
@@ -91,10 +83,7 @@ class Score:
 
         Right is all of a group's scenes, and of all scenes that share which is `MOST`.
 
-        Parameters
-        ----------
-        group : str, optional
-            By default all scenes.
+        `group`: By default all scenes.
         """
         rows, share = (self.rows, MOST) if group is None else (self.of(group), 1.0)
         found = None
@@ -165,10 +154,7 @@ def scored(
     Scenes that were not answered are open. Where none was answered of those in the plane, in
     space, or that ask for motion, these are left out: engines may know only others.
 
-    Parameters
-    ----------
-    asked : mapping of str to Question or Motion
-        All scenes.
+    `asked`: All scenes.
     """
     known = {_sort(asked[name]) for name in answers}
     rows = [
@@ -216,15 +202,8 @@ def _row(asked: Question | Motion, answer: Answer | None) -> Row:
 def worse(now: Mapping[str, Any], expected: Mapping[str, Any]) -> Sequence[str]:
     """Tell in which groups a record is right at fewer levels than was expected.
 
-    Parameters
-    ----------
-    now, expected : mapping
-        As `Score.record` returns them.
-
-    Returns
-    -------
-    sequence of str
-        A sentence each; none where nothing is worse.
+    `now`, `expected`: As `Score.record` returns them.
+    Returns: A sentence each; none where nothing is worse.
     """
     found: list[str] = []
     pairs = [("all scenes", now, expected)]

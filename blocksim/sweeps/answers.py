@@ -39,14 +39,9 @@ class Asked(NamedTuple):
 class Tally:
     """What a number of rows took.
 
-    Parameters
-    ----------
-    rows, failed : int
-        Rows, and those that say why there is no answer.
-    simulated_s : float
-        Time of the simulations [s].
-    spared : int
-        Arches an engine was asked about, and `limit` answered for.
+    `rows`, `failed`: Rows, and those that say why there is no answer.
+    `simulated_s`: Time of the simulations [s].
+    `spared`: Arches an engine was asked about, and `limit` answered for.
     """
 
     rows: int = 0
@@ -64,10 +59,7 @@ class Tally:
 class Answered(NamedTuple):
     """Rows as they are written, and what they took.
 
-    Parameters
-    ----------
-    seconds : dict
-        Per pace of cases: number of cases and time taken [s].
+    `seconds`: Per pace of cases: number of cases and time taken [s].
     """
 
     lines: list[bytes]
@@ -87,10 +79,7 @@ def version_of(method: str) -> str:
 def answer(asked: Sequence[Asked], versions: dict[str, str]) -> Answered:
     """Answer cases, in a worker.
 
-    Parameters
-    ----------
-    versions : dict
-        Of each method, as where the sweep was started.
+    `versions`: Of each method, as where the sweep was started.
     """
     for method in {each.case.method for each in asked}:
         if version_of(method) != versions[method]:

@@ -19,15 +19,8 @@ CONNECT_SECONDS = 60
 def cluster(address: str) -> Generator[tuple[Executor, int]]:
     """Connect to a dask scheduler.
 
-    Parameters
-    ----------
-    address : str
-        As the scheduler prints it, tcp://host:8786.
-
-    Yields
-    ------
-    threads : int
-        Of all workers.
+    `address`: As the scheduler prints it, tcp://host:8786.
+    Yields `threads`: Of all workers.
     """
     if find_spec("distributed") is None:
         raise MissingPart("dask", "pip install 'blocksim[dask]'")

@@ -39,16 +39,10 @@ def _as_table(written: object) -> object:
 class Axis(Written):
     """Values of one quantity: a list, or a range of evenly spaced ones.
 
-    Parameters
-    ----------
-    values : tuple of float
-        One or several; a file may say `mu = [0.5, 0.7]` for short.
-    low, high : float, optional
-        Range, both ends included.
-    steps : int, optional
-        Number of values in the range; a random design draws from anywhere in it.
-    log : bool
-        Evenly spaced in the logarithm.
+    `values`: One or several; a file may say `mu = [0.5, 0.7]` for short.
+    `low`, `high`: Range, both ends included.
+    `steps`: Number of values in the range; a random design draws from anywhere in it.
+    `log`: Evenly spaced in the logarithm.
     """
 
     values: Annotated[tuple[Number, ...], Said(max_length=10_000)] = ()
@@ -102,12 +96,8 @@ Values = Axis | tuple[str, ...]
 class RandomTable(Written):
     """Table `[random]`: draw structures instead of taking every combination.
 
-    Parameters
-    ----------
-    count : int
-        How many.
-    seed : int
-        The same seed draws the same structures.
+    `count`: How many.
+    `seed`: The same seed draws the same structures.
     """
 
     count: Annotated[int, Said(ge=1, strict=True)]
@@ -118,22 +108,13 @@ class RandomTable(Written):
 class SettingsTable(Written):
     """Table `[settings]`: of engines, instead of what their rules say; see `Settings`.
 
-    Parameters
-    ----------
-    step : Axis
-        Length of a step [sqrt(r/g)].
-    accuracy : Axis
-        Share by which motion may be off; steps follow.
-    sweeps : Axis
-        Sweeps over the contacts in each step of a moving run.
-    hold_sweeps : Axis
-        The most sweeps an onset test may take.
-    still : Axis
-        Acceleration that counts as rest [g].
-    rest : Axis
-        Displacement that counts as rest, over the radius.
-    restitution : Axis
-        Share of the velocity with which blocks hit that they part with.
+    `step`: Length of a step [sqrt(r/g)].
+    `accuracy`: Share by which motion may be off; steps follow.
+    `sweeps`: Sweeps over the contacts in each step of a moving run.
+    `hold_sweeps`: The most sweeps an onset test may take.
+    `still`: Acceleration that counts as rest [g].
+    `rest`: Displacement that counts as rest, over the radius.
+    `restitution`: Share of the velocity with which blocks hit that they part with.
     """
 
     step: AxisField | None = None
@@ -155,26 +136,17 @@ class SettingsTable(Written):
 class How:
     """How a sweep asks.
 
-    Parameters
-    ----------
-    over : str
-        Parameter to bracket over; without it the question is whether it stands. Of arches by
-        their half-angle it is `thickness` where none is given.
-    method : tuple of str
-        Every structure is put to each.
-    band : float
-        Of arches by half-angle and `eta` or `ratio`: engines simulate those within this share
-        of their least thickness, and `limit` answers for the others. By default a named engine
-        simulates all, and `auto` those within 0.001, with `direct`.
-    tol : float
-        Relative width of a bracket.
-    confirm : bool
-        Let blocks go at both ends of an engine's bracket; without, the onset test alone
+    `over`: Parameter to bracket over; without it the question is whether it stands. Of arches
+        by their half-angle it is `thickness` where none is given.
+    `method`: Every structure is put to each.
+    `band`: Of arches by half-angle and `eta` or `ratio`: engines simulate those within this
+        share of their least thickness, and `limit` answers for the others. By default a named
+        engine simulates all, and `auto` those within 0.001, with `direct`.
+    `tol`: Relative width of a bracket.
+    `confirm`: Let blocks go at both ends of an engine's bracket; without, the onset test alone
         answers, in about half of the time.
-    settings : SettingsTable
-        Axes like any other; a method is given those it is run with.
-    random : RandomTable
-        Draws structures instead.
+    `settings`: Axes like any other; a method is given those it is run with.
+    `random`: Draws structures instead.
     """
 
     over: str | None = None
@@ -190,14 +162,9 @@ class How:
 class Design(How):
     """Every combination of the values given, or a number of structures drawn from them.
 
-    Parameters
-    ----------
-    axes : mapping of str to Axis or tuple of str
-        By name: parameters of the kind, `arch.thickness` of its arch, `mu`, and what acts.
-    known : mapping of str to Field
-        What each may be.
-    rest : mapping
-        What all have in common: parameters that are tables, loads, density.
+    `axes`: By name: parameters of the kind, `arch.thickness` of its arch, `mu`, and what acts.
+    `known`: What each may be.
+    `rest`: What all have in common: parameters that are tables, loads, density.
     """
 
     kind: str

@@ -49,20 +49,12 @@ USUAL_ARCH = {"voussoirs": 27, "weight": "centreline"}
 class DesignFile(How, Written):
     """What a design file says besides the parameters of its kind.
 
-    Parameters
-    ----------
-    kind : str
-        Of structure.
-    mu : Axis
-        Friction coefficient; inf allowed.
-    load : Axis
-        Factor on the live loads.
-    tilt_deg : Axis
-        Slope of the table [deg].
-    amplitude_g, duration_s : Axis
-        How strongly [g] and how long [s] the ground shakes.
-    live, dead, move, density, shake : as in structure files
-        What all structures have in common.
+    `kind`: Of structure.
+    `mu`: Friction coefficient; inf allowed.
+    `load`: Factor on the live loads.
+    `tilt_deg`: Slope of the table [deg].
+    `amplitude_g`, `duration_s`: How strongly [g] and how long [s] the ground shakes.
+    `live`, `dead`, `move`, `density`, `shake`: What all structures have in common.
     """
 
     mu: AxisField

@@ -165,16 +165,10 @@ def _answered(todo: _Todo, folder: Path, hands: _Hands, progress: Progress) -> T
 class _Todo:
     """Cases still to be answered, in chunks sized by the time they take.
 
-    Attributes
-    ----------
-    size : int
-        Cases in all.
-    versions : dict of str to str
-        Of the methods that are asked.
-    done : set of bytes
-        Cases whose rows are there.
-    found : int
-        Of those, how many were passed over.
+    `size`: Cases in all.
+    `versions`: Of the methods that are asked.
+    `done`: Cases whose rows are there.
+    `found`: Of those, how many were passed over.
     """
 
     def __init__(self, design: Questions | AnyPath | Mapping[str, Any]) -> None:
@@ -226,10 +220,7 @@ class _Todo:
 class _Hands:
     """The executor given, or processes that are replaced when one of them dies.
 
-    Attributes
-    ----------
-    many : int
-        Chunks that they are given at once.
+    `many`: Chunks that they are given at once.
     """
 
     def __init__(self, given: Executor | None, workers: int, in_flight: int | None) -> None:

@@ -67,10 +67,7 @@ class Acting:
     def aside(self, moment: Any, share: float) -> tuple[list[Shape], list[Label]]:
         """Draw what has its own place: the pulse with the time, the amount of a spread.
 
-        Parameters
-        ----------
-        share : float
-            Of their size at which blocks are drawn.
+        `share`: Of their size at which blocks are drawn.
         """
         problem, size = self._stage.recording.problem, self._size
         shapes, labels = list[Shape](), list[Label]()

@@ -58,17 +58,11 @@ FAINT = 1e-7
 class ArchPicture:
     """What is drawn of one arch; r = 1.
 
-    Parameters
-    ----------
-    title, subtitle : str
-        Outcome and figures; which arch it is.
-    weight : {"centreline", "sector"}
-    thrust, crown_moment : float
-        h and m of the equilibrium shown.
-    joints : (j,) float
-        Joints of the stonework, none for the continuous arch [rad].
-    collapse : Collapse
-        How it falls.
+    `title`, `subtitle`: Outcome and figures; which arch it is.
+    `weight`, {"centreline", "sector"}.
+    `thrust`, `crown_moment`: h and m of the equilibrium shown.
+    `joints`, (j,): Joints of the stonework, none for the continuous arch [rad].
+    `collapse`: How it falls.
     """
 
     title: str

@@ -57,22 +57,12 @@ class Piece(NamedTuple):
 class Camera:
     """An eye in perspective; y is upwards.
 
-    Parameters
-    ----------
-    middle : (3,) float
-        What it looks at.
-    reach : float
-        Half-diagonal of what is shown.
-    aside, above : float
-        Where the eye is: turned about the vertical, and raised.
-
-    Attributes
-    ----------
-    eye : (3,) float
-    scale : float
-        Pixels in a length of 1 at the distance of 1.
-    shift : (2,) float
-        The place of the middle [pixels].
+    `middle`, (3,): What it looks at.
+    `reach`: Half-diagonal of what is shown.
+    `aside`, `above`: Where the eye is: turned about the vertical, and raised.
+    `eye`, (3,).
+    `scale`: Pixels in a length of 1 at the distance of 1.
+    `shift`, (2,): The place of the middle [pixels].
     """
 
     def __init__(self, middle: Array, reach: float, aside: float, above: float) -> None:
@@ -122,22 +112,13 @@ def painting_order(
 ) -> list[int]:
     """Order bodies so that each is painted after all it hides.
 
-    Parameters
-    ----------
-    corners : (bodies, corners, 3) float
-    normals : (bodies, faces, 3) float
-        Outwards; a normal of length 0 is no face.
-    offsets : (bodies, faces) float
-        Of the faces along their normals.
-    eye : (3,) float
-    boxes : (bodies, 2, 2) float
-        Smallest and largest place of each body in the picture: only where these overlap
-        can one body hide another.
-
-    Returns
-    -------
-    list of int
-        The farthest first. Where bodies hide each other in a ring, which convex ones
+    `corners`, (bodies, corners, 3).
+    `normals`, (bodies, faces, 3): Outwards; a normal of length 0 is no face.
+    `offsets`, (bodies, faces): Of the faces along their normals.
+    `eye`, (3,).
+    `boxes`, (bodies, 2, 2): Smallest and largest place of each body in the picture: only where
+        these overlap can one body hide another.
+    Returns: The farthest first. Where bodies hide each other in a ring, which convex ones
         rarely do, the farthest of them is painted first.
     """
     low, high = boxes[:, 0], boxes[:, 1]

@@ -60,16 +60,11 @@ def edge_width(scale: float, grain: float) -> float:
 class Shape(NamedTuple):
     """A polygon, or a line if it has an edge and no fill.
 
-    Parameters
-    ----------
-    points : (k, 2) float
-        In pixels from the lower left corner.
-    width : float
-        Of the edge, in pixels.
-    closed : bool
-        Whether the last point is joined to the first.
-    dash : tuple of float
-        Lengths of the edge drawn and left out, in widths; nothing where it is drawn through.
+    `points`, (k, 2): In pixels from the lower left corner.
+    `width`: Of the edge, in pixels.
+    `closed`: Whether the last point is joined to the first.
+    `dash`: Lengths of the edge drawn and left out, in widths; nothing where it is drawn
+        through.
     """
 
     points: Array

@@ -56,13 +56,10 @@ MOST_ABREAST = 7
 def chart_figures(points: Sequence[Point]) -> dict[str, Figure]:
     """Draw what was measured: each repeat, medians joined, the front in the background.
 
-    Returns
-    -------
-    dict of str to Figure
-        By name, those for which there are points: `chart`, methods at their best, by tolerance
-        or by what else another program has, and one picture for each other way to set them.
-        The front in a panel is that of all points of its arch with the same reference, those
-        of other pictures too.
+    Returns: By name, those for which there are points: `chart`, methods at their best, by
+        tolerance or by what else another program has, and one picture for each other way to set
+        them. The front in a panel is that of all points of its arch with the same reference,
+        those of other pictures too.
     """
     by_tolerance = {p.method for p in points if p.knob == "tolerance"}
     as_built = [p for p in points if p.against == "limit"]

@@ -25,18 +25,11 @@ QUARTER = 0.25
 class Length:
     """A length between two points, measured along a direction.
 
-    Parameters
-    ----------
-    what : str
-        span, rise, thickness, width or height.
-    ends : pair of (2,) float
-        The points [m].
-    at : (2,) float
-        A point of the dimension line [m].
-    along : (2,) float
-        Its direction, from start to end.
-    note : str
-        What it is a dimension of.
+    `what`: span, rise, thickness, width or height.
+    `ends`, pair of (2,): The points [m].
+    `at`, (2,): A point of the dimension line [m].
+    `along`, (2,): Its direction, from start to end.
+    `note`: What it is a dimension of.
     """
 
     what: str
@@ -88,12 +81,8 @@ class Angle:
 def dimensions_of(problem: Problem, shown: Array, scale: float) -> list[Length | Angle]:
     """Choose what is measured on the drawing of a problem.
 
-    Parameters
-    ----------
-    shown : (k, 2) float
-        Points of what is drawn [m]; dimension lines of the whole are beyond.
-    scale : float
-        Of the drawing: a millimetre on paper is so many millimetres.
+    `shown`, (k, 2): Points of what is drawn [m]; dimension lines of the whole are beyond.
+    `scale`: Of the drawing: a millimetre on paper is so many millimetres.
     """
     if problem.is_arch:
         return _of_arch(problem, shown, scale)

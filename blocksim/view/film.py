@@ -50,44 +50,24 @@ SAMPLES = 200
 class Film:
     """Frames drawn from recordings alone: equal recordings give equal frames.
 
-    Parameters
-    ----------
-    recordings : sequence of Recording
-        One, or two to show side by side on one clock.
-    verdict : Verdict, optional
-        What a check says of all of them; by default what the motion tells is said.
-    enlarge : float
-        How many times larger than it was the motion is drawn.
-    view : {"2d", "3d"}
-        Of blocks of the plane; those in space are seen in perspective.
-    slow : float, optional
-        How many times slower than it happened; by default such that the motion takes
-        about six seconds.
-    height : int
-        Of a frame [pixels]; it is 16:9.
-    rate : int
-        Frames in a second.
-    beside : sequence of Recording
-        Shown in other films beside this one: there is room for them, too, so that all have
-        one scale.
-
-    Attributes
-    ----------
-    width, height : int
-        Both even, as video asks for.
-    seconds : float
-        How long the motion is that is shown.
-    on_ground : bool
-        Whether it ends because a block has reached the ground or a footing.
-    count : int
-        Number of frames.
-    metric : bool
-        Whether lengths and times are shown in metres and seconds: unless all are arches with
-        a radius of 1, which stands for none given. Then they are in r and sqrt(r/g).
-    moves : list of bool
-        Whether each recording is seen to move.
-    speed : float
-        Of the fastest corner as it ends [m/s]; 0 where all lie still.
+    `recordings`: One, or two to show side by side on one clock.
+    `verdict`: What a check says of all of them; by default what the motion tells is said.
+    `enlarge`: How many times larger than it was the motion is drawn.
+    `view`, {"2d", "3d"}: Of blocks of the plane; those in space are seen in perspective.
+    `slow`: How many times slower than it happened; by default such that the motion takes about
+        six seconds.
+    `height`: Of a frame [pixels]; it is 16:9.
+    `rate`: Frames in a second.
+    `beside`: Shown in other films beside this one: there is room for them, too, so that all
+        have one scale.
+    `width`, `height`: Both even, as video asks for.
+    `seconds`: How long the motion is that is shown.
+    `on_ground`: Whether it ends because a block has reached the ground or a footing.
+    `count`: Number of frames.
+    `metric`: Whether lengths and times are shown in metres and seconds: unless all are arches
+        with a radius of 1, which stands for none given. Then they are in r and sqrt(r/g).
+    `moves`: Whether each recording is seen to move.
+    `speed`: Of the fastest corner as it ends [m/s]; 0 where all lie still.
     """
 
     def __init__(

@@ -44,26 +44,16 @@ OF: dict[Weight, str] = {"centreline": "", "sector": ", weight of sectors"}
 class MapPoint:
     """An arch on the map.
 
-    Parameters
-    ----------
-    mu, eta : float
-        Unbounded friction has a strip of its own.
-    mode : Mode or None
-        As observed.
-    label : str
-        Number or letter written beside it.
-    miss : bool
-        Whether something disagrees.
-    note : str
-        Line of the legend that explains the label.
-    engine : str
-        Which one observed it.
-    outline : bool
-        Drawn as an outline, around the point of another engine; without a label.
-    none_stands : bool
-        Whether no thickness stands: then it is drawn at the upper frame, with an arrow.
-    link : str
-        Where a click on it leads, in SVG; nowhere if empty.
+    `mu`, `eta`: Unbounded friction has a strip of its own.
+    `mode`: As observed.
+    `label`: Number or letter written beside it.
+    `miss`: Whether something disagrees.
+    `note`: Line of the legend that explains the label.
+    `engine`: Which one observed it.
+    `outline`: Drawn as an outline, around the point of another engine; without a label.
+    `none_stands`: Whether no thickness stands: then it is drawn at the upper frame, with an
+        arrow.
+    `link`: Where a click on it leads, in SVG; nowhere if empty.
     """
 
     mu: float
@@ -88,12 +78,8 @@ def map_figure(
 ) -> Figure:
     """Draw the regions of the map (Fig. 9), with points in front.
 
-    Parameters
-    ----------
-    central : bool
-        Only the middle, where most regions meet (Fig. 11).
-    friction : FrictionAxis
-        The coefficient; without points the friction angle is possible, too.
+    `central`: Only the middle, where most regions meet (Fig. 11).
+    `friction`: The coefficient; without points the friction angle is possible, too.
     """
     if points and friction.angle:
         message = "points are drawn on an axis of coefficients"

@@ -83,12 +83,9 @@ class Region(NamedTuple):
 class MapShapes(NamedTuple):
     """The map up to the end of its friction axis and eta = 2.
 
-    Parameters
-    ----------
-    regions : tuple of Region
-        Of the six modes at finite friction.
-    lines : dict of str to Curve
-        Between them: `divide`, `first`, `equal`, `crown`, as `regions` of the theory has them.
+    `regions`: Of the six modes at finite friction.
+    `lines`: Between them: `divide`, `first`, `equal`, `crown`, as `regions` of the theory has
+        them.
     """
 
     regions: tuple[Region, ...]
@@ -159,15 +156,8 @@ def iso_line(
 ) -> Curve:
     """Line of equal half-angle, with its upright part on the divide.
 
-    Parameters
-    ----------
-    half_angle : float
-        From 0.01 to 3 [rad].
-
-    Returns
-    -------
-    Curve
-        Empty where the half-angle stands at no friction on the map.
+    `half_angle`: From 0.01 to 3 [rad].
+    Returns: Empty where the half-angle stands at no friction on the map.
     """
     line = iso_half_angle(half_angle, axis.frictions(0.02, ISO_POINTS), weight)
     if not line.mu.size:
@@ -192,15 +182,8 @@ def iso_continued(
     Without sliding the least thickness would be that of unbounded friction, and without
     turning the line would be upright: both go on to the corner where they meet.
 
-    Parameters
-    ----------
-    half_angle : float
-        From 0.01 to alpha_L [rad].
-
-    Returns
-    -------
-    Curve
-        From the foot of the upright part down, and to the right to the first sliding.
+    `half_angle`: From 0.01 to alpha_L [rad].
+    Returns: From the foot of the upright part down, and to the right to the first sliding.
     """
     level = theory.least_thickness(half_angle, math.inf, weight).eta
     if level is None:

@@ -60,10 +60,7 @@ NOTES = {
 def paper_figure(number: int) -> Figure:
     """Draw a figure of the paper.
 
-    Parameters
-    ----------
-    number : int
-        1 to 25.
+    `number`: 1 to 25.
     """
     require(number in FIGURES, "figure", number, "from 1 to 25")
     with mpl.rc_context(FONT):

@@ -176,13 +176,10 @@ def _cone(axes: Axes, name: str, slope: float, words: tuple[str, str], colour: s
 def moved_block(kind: int, points: Array) -> Array:
     """Move points of the block on the crown's side of a joint at one of its four rates.
 
-    Parameters
-    ----------
-    kind : int
-        Place in the order of the strength conditions: turns about the extrados, about the
+    `kind`: Place in the order of the strength conditions: turns about the extrados, about the
         intrados, slides outwards, inwards.
-    points : (k, 2) float
-        Along the arch from the joint to the crown, and outwards from the centreline.
+    `points`, (k, 2): Along the arch from the joint to the crown, and outwards from the
+        centreline.
     """
     if kind < 2:
         edge = np.array([0.0, HALF_DEPTH if kind == 0 else -HALF_DEPTH])

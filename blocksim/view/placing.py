@@ -17,19 +17,10 @@ from blocksim.view.drawing import Part
 class Placing:
     """Convex pieces of blocks, and joints, carried by the poses of a recording.
 
-    Parameters
-    ----------
-    sides : int
-        Corners that a piece is to have at least.
-
-    Attributes
-    ----------
-    owner : (pieces,) int
-        The block that each piece belongs to.
-    sides : int
-        Corners of each piece; what has fewer repeats its last one.
-    outlines : (pieces, sides, 2) float
-        Of the pieces, from the centres of their blocks.
+    `sides`: Corners that a piece is to have at least.
+    `owner`, (pieces,): The block that each piece belongs to.
+    `sides`: Corners of each piece; what has fewer repeats its last one.
+    `outlines`, (pieces, sides, 2): Of the pieces, from the centres of their blocks.
     """
 
     def __init__(self, recording: Recording, sides: int) -> None:

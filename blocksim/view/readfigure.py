@@ -28,10 +28,7 @@ def read_figure(drawing: Drawing, refusal: InputError | None = None) -> Figure:
 
     Artists have a `gid`: `block-NAME`, `support-NAME`, `refused-1`, `marked-NAME`.
 
-    Parameters
-    ----------
-    refusal : InputError, optional
-        What was said of it; blocks that it names are marked.
+    `refusal`: What was said of it; blocks that it names are marked.
     """
     with mpl.rc_context({**FONT, "font.size": 8.0}):
         figure = Figure(figsize=(11.7, 8.3))

@@ -69,21 +69,14 @@ class Titles:
 class Sheet:
     """What is drawn of a problem, by every writer of drawings.
 
-    Parameters
-    ----------
-    facts : tuple of str
-        Lines below the title.
-    forces : (joints, 2, 2) float or None
-        Of the state of greatest margin; drawn at each joint where there are no lines.
-    thrust : (int, str) or None
-        The joint at which thrust is told, and its range in words.
-    reactions : tuple of Reaction
-        In the state of greatest margin.
-    mechanism : (blocks, 3) float or None
-    supports : tuple of tuple of (k, 2) float
-        Convex parts of each support near the blocks [m].
-    pressed : bool
-        Whether pressures along joints are drawn, in place of dimensions.
+    `facts`: Lines below the title.
+    `forces`, (joints, 2, 2): Of the state of greatest margin; drawn at each joint where there
+        are no lines.
+    `thrust`, (int, str): The joint at which thrust is told, and its range in words.
+    `reactions`: In the state of greatest margin.
+    `mechanism`, (blocks, 3).
+    `supports`, tuple of tuple of (k, 2): Convex parts of each support near the blocks [m].
+    `pressed`: Whether pressures along joints are drawn, in place of dimensions.
     """
 
     problem: Problem
@@ -120,18 +113,11 @@ def sheet_of(
 ) -> Sheet:
     """Collect what is drawn of a problem, and of an answer to a question about it.
 
-    Parameters
-    ----------
-    verdict : str
-        The answer of a check, in words.
-    mechanism : (blocks, 3) float, optional
-        Rates x, y (in units of the size) and rotation; drawn enlarged.
-    forces : (joints, 2, 2) float, optional
-        Contact forces to draw where nothing is known of what it carries.
-    carried : Carried, optional
-        What it carries, as of `carried_of`: lines of thrust, reactions.
-    facts : sequence of str, optional
-        What is said below the title, instead of what it is built of.
+    `verdict`: The answer of a check, in words.
+    `mechanism`, (blocks, 3): Rates x, y (in units of the size) and rotation; drawn enlarged.
+    `forces`, (joints, 2, 2): Contact forces to draw where nothing is known of what it carries.
+    `carried`: What it carries, as of `carried_of`: lines of thrust, reactions.
+    `facts`: What is said below the title, instead of what it is built of.
     """
     unit = force_unit(problem)
     found: dict[str, Any] = {"forces": forces}

@@ -59,13 +59,9 @@ def sheet_figure(
     Every artist has a `gid` that says what it is: `block-3`, `support-0`, `joint-5`,
     `hinge-5`, `thrust-min-0`, `reaction-1`, `dimension-span`, `moved-3`, `scale`.
 
-    Parameters
-    ----------
-    column : (width, height), optional
-        Of a column that it is put into [mm], the height at most. By default it is a page of
-        A4, across or upright.
-    bare : bool
-        Without title, facts and version: a page says them.
+    `column`, (width, height): Of a column that it is put into [mm], the height at most. By
+        default it is a page of A4, across or upright.
+    `bare`: Without title, facts and version: a page says them.
     """
     problem = sheet.problem
     with mpl.rc_context({**FONT, "font.size": SMALL, "hatch.linewidth": 0.5}):

@@ -35,16 +35,11 @@ STEP, TRIES = 1.5, 12
 class Layout:
     """Where what is drawn lies on the page, and words that have their place on it.
 
-    Parameters
-    ----------
-    scale : float
-        A millimetre on paper is so many millimetres.
-    low : (2,) float
-        What lies at the lower left corner of the page [m].
-    edge, bar : float
-        Width of the margin, and height of the scale's bar above the page's lower edge [mm].
-    words : list of Bbox
-        Boxes of the words so far, in dots.
+    `scale`: A millimetre on paper is so many millimetres.
+    `low`, (2,): What lies at the lower left corner of the page [m].
+    `edge`, `bar`: Width of the margin, and height of the scale's bar above the page's lower
+        edge [mm].
+    `words`: Boxes of the words so far, in dots.
     """
 
     paper: Paper

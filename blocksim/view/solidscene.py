@@ -163,18 +163,12 @@ def told(states: Iterable[JointState]) -> list[tuple[str, str]]:
 def force_lines(problem: Problem[SpatialAssembly], forces: Array) -> tuple[Array, Array]:
     """Return where the resultants of joints act, and how large they are.
 
-    Parameters
-    ----------
-    problem : Problem[SpatialAssembly]
-    forces : (points, 3) float
-        At the points of all joints, along their normals and across, as of `SpatialStatics`.
-
-    Returns
-    -------
-    lines : (joints, 2, 3) float
-        From end to end through the centre of pressure, in proportion to the force [m].
-    shares : (joints,) float
-        Of the largest force.
+    `problem`.
+    `forces`, (points, 3): At the points of all joints, along their normals and across, as of
+        `SpatialStatics`.
+    Returns `lines`, (joints, 2, 3): From end to end through the centre of pressure, in
+        proportion to the force [m].
+    Returns `shares`, (joints,): Of the largest force.
     """
     sums, places = pressed(problem, forces)
     sizes = np.linalg.norm(sums, axis=1)

@@ -44,15 +44,12 @@ DIGITS = 9
 class Moment(NamedTuple):
     """Where everything is at one time.
 
-    Parameters
-    ----------
-    corners : (pieces, 2, sides, 3) float
-        Of the near and the far face of each convex piece of a block: x, y, and z towards the
-        viewer.
-    faces : (joints, 2, 2, 3) float
-        Both ends of each joint as the blocks before and after it have carried them.
-    statics : float
-        1 while the line of thrust of the arch at rest still says something, falling to 0.
+    `corners`, (pieces, 2, sides, 3): Of the near and the far face of each convex piece of a
+        block: x, y, and z towards the viewer.
+    `faces`, (joints, 2, 2, 3): Both ends of each joint as the blocks before and after it have
+        carried them.
+    `statics`: 1 while the line of thrust of the arch at rest still says something, falling to
+        0.
     """
 
     time: float

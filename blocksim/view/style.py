@@ -19,14 +19,9 @@ from blocksim.simulation.verdict import Verdict
 class Style(NamedTuple):
     """How a mode or a method is drawn.
 
-    Parameters
-    ----------
-    colour : str
-        Of points.
-    tint : str
-        Of regions: the same, lightened.
-    marker : str
-        Shape of points, so that colour never stands alone.
+    `colour`: Of points.
+    `tint`: Of regions: the same, lightened.
+    `marker`: Shape of points, so that colour never stands alone.
     """
 
     colour: str

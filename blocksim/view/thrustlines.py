@@ -53,15 +53,8 @@ def thrust_lines(problem: Problem, forces: Array) -> list[Array]:
     A block on which several blocks lie hands what each of them brings on to all that bear it,
     straight from joint to joint.
 
-    Parameters
-    ----------
-    forces : (joints, 2, 2) float
-        As of `Equilibrium` [mean weights].
-
-    Returns
-    -------
-    list of (k, 2) float
-        Open polylines [m].
+    `forces`, (joints, 2, 2): As of `Equilibrium` [mean weights].
+    Returns list of (k, 2): Open polylines [m].
     """
     carried = resultants(problem, forces)
     size = np.hypot(*carried.force.T)
@@ -141,12 +134,8 @@ def force_sizes(problem: Problem, forces: Array, path: Array) -> Array:
 
     It is that of the joint which is nearest to the middle of each piece.
 
-    Parameters
-    ----------
-    forces : (joints, 2, 2) float
-        As of `Equilibrium` [mean weights].
-    path : (k, 2) float
-        A line of `thrust_lines` [m].
+    `forces`, (joints, 2, 2): As of `Equilibrium` [mean weights].
+    `path`, (k, 2): A line of `thrust_lines` [m].
     """
     carried = resultants(problem, forces)
     loaded = ~np.isnan(carried.point[:, 0])

@@ -63,25 +63,14 @@ def render(
 ) -> Film:
     """Draw recordings into a file, whole or not at all.
 
-    Parameters
-    ----------
-    recordings : sequence of Recording
-        One, or two to show side by side.
-    out : Path
-        Ending in .mp4 or .gif for a film, .png, .svg or .pdf for one frame of it.
-    view : {"2d", "3d"}
-    slow : float, optional
-        How many times slower than it happened.
-    at : float, optional
-        For a single frame: time since the release, in the unit of the film's clock; by
+    `recordings`: One, or two to show side by side.
+    `out`: Ending in .mp4 or .gif for a film, .png, .svg or .pdf for one frame of it.
+    `view`, {"2d", "3d"}.
+    `slow`: How many times slower than it happened.
+    `at`: For a single frame: time since the release, in the unit of the film's clock; by
         default the end.
-    height : int
-        In pixels; frames are 16:9.
-
-    Returns
-    -------
-    Film
-        As it was drawn.
+    `height`: In pixels; frames are 16:9.
+    Returns: As it was drawn.
     """
     out = Path(out)
     kind = out.suffix.removeprefix(".")

@@ -25,20 +25,11 @@ def which_stand(
 ) -> NDArray[np.bool_]:
     """Tell which arches have an equilibrium within strength, as `stands` does for one.
 
-    Parameters
-    ----------
-    half_angle : (...) float
-        In (0, pi) [rad].
-    eta : (...) float
-        In (0, 2].
-    mu : (...) float
-        Above 0, inf allowed; the three broadcast against each other.
-    voussoirs : int
-        Number of voussoirs of every arch, 3 to 10000.
-
-    Returns
-    -------
-    (...) bool
+    `half_angle`, (...): In (0, pi) [rad].
+    `eta`, (...): In (0, 2].
+    `mu`, (...): Above 0, inf allowed; the three broadcast against each other.
+    `voussoirs`: Number of voussoirs of every arch, 3 to 10000.
+    Returns (...).
     """
     VOUSSOIRS.require("voussoirs", voussoirs)
     alpha, depth, friction = checked_arrays(weight, half_angle=half_angle, eta=eta, mu=mu)
@@ -62,17 +53,10 @@ def chunk_size(joints: int) -> int:
 def short_intervals(joints: Joints, depth: Array, mu: Array, spread: Array) -> Array:
     """Intervals of thrusts in equilibrium with strength at every joint.
 
-    Parameters
-    ----------
-    joints : Joints
-        Of one half of each arch.
-    depth, mu, spread : (k,) float
-        As in `thrust_bounds`.
-
-    Returns
-    -------
-    (2, k) float
-        1 - h, of the lowest thrust and of the highest; none where the first is the less.
+    `joints`: Of one half of each arch.
+    `depth`, `mu`, `spread`, (k,): As in `thrust_bounds`.
+    Returns (2, k): 1 - h, of the lowest thrust and of the highest; none where the first is the
+        less.
     """
     if joints.angles.shape[1] > FEW:
         known = zip(np.sort(joints.angles), depth, mu, spread, strict=True)
@@ -98,17 +82,9 @@ def short_intervals(joints: Joints, depth: Array, mu: Array, spread: Array) -> A
 def least_thickness_of_joints(angles: Array, mu: Array, weight: Weight) -> Array:
     """Least thickness of many arches whose joints may be anywhere.
 
-    Parameters
-    ----------
-    angles : (k, j) float
-        Joints of one half of each arch, in any order [rad].
-    mu : (k,) float
-        Friction coefficients, inf allowed.
-
-    Returns
-    -------
-    (k,) float
-        0 where any thickness stands, nan where none up to 2 does.
+    `angles`, (k, j): Joints of one half of each arch, in any order [rad].
+    `mu`, (k,): Friction coefficients, inf allowed.
+    Returns (k,): 0 where any thickness stands, nan where none up to 2 does.
     """
     if angles.shape[1] > FEW:
         each = zip(np.sort(angles), mu.tolist(), strict=True)

@@ -32,16 +32,9 @@ def collapse_of_mode(
 ) -> Collapse:
     """Find the mechanism of one mode of the continuous arch.
 
-    Parameters
-    ----------
-    half_angle, eta, mu, beta_r, beta_s : float
-        As `least_thickness` of the theory gives them; `beta_r` and `beta_s` where the
-        mode has such a joint [rad].
-
-    Returns
-    -------
-    Collapse
-        With associated sliding; rates add up to one.
+    `half_angle`, `eta`, `mu`, `beta_r`, `beta_s`: As `least_thickness` of the theory gives
+        them; `beta_r` and `beta_s` where the mode has such a joint [rad].
+    Returns: With associated sliding; rates add up to one.
     """
     active = _active(mode, half_angle, beta_r, beta_s)
     angles = np.unique([angle for angle, _ in active])

@@ -32,15 +32,10 @@ SAME = 1e-6
 class ComplementaryMode:
     """One mechanism of a complementary problem that is no mixture of others.
 
-    Parameters
-    ----------
-    mode : Mode or None
-        None where its joints form none of the seven.
-    collapse : Collapse
-        Its rates at all joints, which add up to one, and its motions, with sliding that
+    `mode`: None where its joints form none of the seven.
+    `collapse`: Its rates at all joints, which add up to one, and its motions, with sliding that
         dilates (associated).
-    product : float
-        -phi' rates, the value of eq. (16); 0 but for round-off.
+    `product`: -phi' rates, the value of eq. (16); 0 but for round-off.
     """
 
     mode: Mode | None
@@ -52,18 +47,12 @@ class ComplementaryMode:
 class Complementary:
     """Forces of an arch of voussoirs, and the mechanisms they allow.
 
-    Parameters
-    ----------
-    angles : (k,) float
-        Joints of one half, from the crown to the springing [rad].
-    extra_strength : float
-        Least extra strength with which it stands: 0 at the least thickness.
-    thrust, crown_moment : float
-        h, and the moment m of the thrust about the centre.
-    strength : (k, 4) float
-        phi: left sides of the strength conditions, in the order of `CONDITIONS`.
-    modes : tuple of ComplementaryMode
-        None where it has strength to spare, or lacks some.
+    `angles`, (k,): Joints of one half, from the crown to the springing [rad].
+    `extra_strength`: Least extra strength with which it stands: 0 at the least thickness.
+    `thrust`, `crown_moment`: h, and the moment m of the thrust about the centre.
+    `strength`, (k, 4): phi: left sides of the strength conditions, in the order of
+        `CONDITIONS`.
+    `modes`: None where it has strength to spare, or lacks some.
     """
 
     angles: Array
@@ -77,19 +66,10 @@ class Complementary:
 def joints_through(half_angle: float, places: Sequence[float], voussoirs: int) -> Array:
     """Lay joints of one half through given places, evenly between them.
 
-    Parameters
-    ----------
-    half_angle : float
-        alpha [rad].
-    places : sequence of float
-        Angles from the crown at which a joint is wanted, up to alpha [rad].
-    voussoirs : int
-        About how many there are in the whole arch.
-
-    Returns
-    -------
-    (k,) float
-        From the crown, where there is a joint, to the springing [rad].
+    `half_angle`: alpha [rad].
+    `places`: Angles from the crown at which a joint is wanted, up to alpha [rad].
+    `voussoirs`: About how many there are in the whole arch.
+    Returns (k,): From the crown, where there is a joint, to the springing [rad].
     """
     nodes = [0.0]
     for place in sorted(places):
@@ -106,12 +86,8 @@ def joints_through(half_angle: float, places: Sequence[float], voussoirs: int) -
 def complementary(angles: Array, eta: float, mu: float) -> Complementary:
     """Solve eqs (15) and (16) for a symmetric arch of voussoirs that weighs at its centreline.
 
-    Parameters
-    ----------
-    angles : (k,) float
-        Joints of one half, the crown at 0 first, the springing last [rad].
-    eta, mu : float
-        Thickness-to-radius ratio; friction coefficient, inf allowed.
+    `angles`, (k,): Joints of one half, the crown at 0 first, the springing last [rad].
+    `eta`, `mu`: Thickness-to-radius ratio; friction coefficient, inf allowed.
     """
     program = conditions(angles, eta, mu, 1.0)
     state, extra, _ = solve(program)

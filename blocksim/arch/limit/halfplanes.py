@@ -37,12 +37,8 @@ FEW = 48
 class Bounds(NamedTuple):
     """Conditions rate (1 - h) <= level; the same ones say level_h <= rate h.
 
-    Parameters
-    ----------
-    rate, level : float
-        Arrays of one shape.
-    level_h : callable
-        Place in them to what the other form has there.
+    `rate`, `level`: Arrays of one shape.
+    `level_h`: Place in them to what the other form has there.
     """
 
     rate: Array
@@ -83,10 +79,7 @@ def spread_of(eta: Value, weight: Weight) -> Value:
 class Joints:
     """Joints of one half of each arch, and what bounds take from their angles alone.
 
-    Parameters
-    ----------
-    angles : (k, j) float
-        From the crown on, where there are more than `FEW` [rad].
+    `angles`, (k, j): From the crown on, where there are more than `FEW` [rad].
     """
 
     def __init__(self, angles: Array) -> None:
@@ -146,17 +139,9 @@ def turning(joints: Joints, depth: Array, spread: Array) -> Bounds:
 
     No tension asks |M| <= (eta/2) N of both; between them m is eliminated.
 
-    Parameters
-    ----------
-    depth : (k,) float
-        Thickness over radius that the line of thrust may use.
-    spread : (k,) float
-        Radius of the weight over the mean radius, less 1.
-
-    Returns
-    -------
-    Bounds
-        Shape (k, j, j).
+    `depth`, (k,): Thickness over radius that the line of thrust may use.
+    `spread`, (k,): Radius of the weight over the mean radius, less 1.
+    Returns: Shape (k, j, j).
     """
     pairs = joints.pairs
     half, extra = depth[:, None, None] / 2, spread[:, None, None]
@@ -182,19 +167,10 @@ def least_met(
     A pair's rate and level are sums over its two joints. Rates fall with the angle of the one
     and grow with that of the other, so those of one sign are all beyond a joint, or before it.
 
-    Parameters
-    ----------
-    joints : Joints
-        Of one half of one arch, from the crown on.
-    depth, spread : float
-        As in `turning`.
-    ends : (float, float)
-        Largest 1 - h, which pairs of rates above 0 bound, and smallest.
-
-    Returns
-    -------
-    set of int
-        None where both ends meet all their conditions.
+    `joints`: Of one half of one arch, from the crown on.
+    `depth`, `spread`: As in `turning`.
+    `ends`, (float, float): Largest 1 - h, which pairs of rates above 0 bound, and smallest.
+    Returns: None where both ends meet all their conditions.
     """
     half = depth / 2
     cosine, lift, bow, force = (
@@ -227,17 +203,9 @@ def least_met(
 def sliding(joints: Joints, mu: Array, sign: float) -> Bounds:
     """Joints of which friction asks sign T <= mu N.
 
-    Parameters
-    ----------
-    mu : (k,) float
-        Friction coefficients, finite.
-    sign : float
-        1 or -1.
-
-    Returns
-    -------
-    Bounds
-        Shape (k, j).
+    `mu`, (k,): Friction coefficients, finite.
+    `sign`: 1 or -1.
+    Returns: Shape (k, j).
     """
     grip, sine, cosine = mu[:, None], joints.sine, joints.cosine
     rate = grip * cosine - sign * sine

@@ -54,16 +54,13 @@ CONDITIONS = ("hinge-extrados", "hinge-intrados", "slides-out", "slides-in")
 class Collapse:
     """A symmetric mechanism.
 
-    Parameters
-    ----------
-    angles : (k,) float
-        Joints from the left springing to the right one, all or those that are active [rad].
-    rates : (k, 4) float
-        Rates of opening and of sliding, in the order of `CONDITIONS`, which add up to one; all
-        0 where it stands.
-    motions : (k - 1, 3) float
-        Velocity of each piece between them, with associated sliding: of its point at the centre
-        of the arch (to the right, upwards) and its rotation (counter-clockwise), r = 1.
+    `angles`, (k,): Joints from the left springing to the right one, all or those that are
+        active [rad].
+    `rates`, (k, 4): Rates of opening and of sliding, in the order of `CONDITIONS`, which add up
+        to one; all 0 where it stands.
+    `motions`, (k - 1, 3): Velocity of each piece between them, with associated sliding: of its
+        point at the centre of the arch (to the right, upwards) and its rotation
+        (counter-clockwise), r = 1.
     """
 
     angles: Array
@@ -75,16 +72,13 @@ class Collapse:
 class Mechanism(Collapse):
     """Statics and kinematics of an arch of n voussoirs at or below its least thickness.
 
-    Parameters
-    ----------
-    extra_strength : float
-        s, in units of gamma t d r^2; 0 at the least thickness, below 0 where it stands.
-    strength : (n + 1, 4) float
-        Left sides of the strength conditions less s, in the order of `CONDITIONS`.
-    thrust, crown_moment : float
-        Scaled resultant at the crown: h, and its moment m about the centre.
-    mode : Mode or None
-        Collapse mode at this thickness, which far below the least need not be that at the
+    `extra_strength`: s, in units of gamma t d r^2; 0 at the least thickness, below 0 where it
+        stands.
+    `strength`, (n + 1, 4): Left sides of the strength conditions less s, in the order of
+        `CONDITIONS`.
+    `thrust`, `crown_moment`: Scaled resultant at the crown: h, and its moment m about the
+        centre.
+    `mode`: Collapse mode at this thickness, which far below the least need not be that at the
         least; None where it stands or the joints form none of the seven.
     """
 

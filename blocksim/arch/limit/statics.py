@@ -62,18 +62,13 @@ Least = tuple[float | None, tuple[Bound, Bound]]
 class LimitState:
     """The arch of n voussoirs at its least thickness.
 
-    Parameters
-    ----------
-    eta : float or None
-        Least thickness-to-radius ratio; 0 where any thickness stands (three voussoirs), None
+    `eta`: Least thickness-to-radius ratio; 0 where any thickness stands (three voussoirs), None
         where none up to 2 does.
-    mode : Mode or None
-        Collapse mode at that thickness (at eta = 2 where `eta` is None); None where
-        the active joints form none of the seven modes.
-    thrust : float or None
-        Scaled thrust ``h`` at the crown; None where none is admissible.
-    hinges_intrados, hinges_extrados, slides : tuple of float
-        Angles from the crown of the joints that turn or slide, on one half [rad].
+    `mode`: Collapse mode at that thickness (at eta = 2 where `eta` is None); None where the
+        active joints form none of the seven modes.
+    `thrust`: Scaled thrust ``h`` at the crown; None where none is admissible.
+    `hinges_intrados`, `hinges_extrados`, `slides`: Angles from the crown of the joints that
+        turn or slide, on one half [rad].
     """
 
     eta: float | None
@@ -102,21 +97,12 @@ def thrust_bounds(
 ) -> tuple[Bound, Bound]:
     """Interval of thrusts in equilibrium with strength at every joint.
 
-    Parameters
-    ----------
-    joints : Joints
-        Of one half of one arch.
-    depth : float
-        Thickness over radius that the line of thrust may use.
-    spread : float
-        Radius of the distributed weight over the mean radius, less 1.
-    slides : (Bound, Bound), optional
-        What `friction_bounds` says, which is the same for every thickness.
-
-    Returns
-    -------
-    lower, upper : Bound
-        Empty where ``lower.short < upper.short``.
+    `joints`: Of one half of one arch.
+    `depth`: Thickness over radius that the line of thrust may use.
+    `spread`: Radius of the distributed weight over the mean radius, less 1.
+    `slides`, (Bound, Bound): What `friction_bounds` says, which is the same for every
+        thickness.
+    Returns `lower`, `upper`: Empty where ``lower.short < upper.short``.
     """
     while True:
         places, few = joints.few
@@ -197,12 +183,8 @@ def stands(arch: Arch, mu: float) -> bool:
 def slack(arch: Arch, mu: float) -> float:
     """Share of thickness and of friction that can be taken away before the arch falls.
 
-    Returns
-    -------
-    float
-        Largest s such that an equilibrium exists with thickness ``(1 - s) t`` for the
-        line of thrust and friction ``(1 - s) mu``; below 0 where the arch does not
-        stand as it is.
+    Returns: Largest s such that an equilibrium exists with thickness ``(1 - s) t`` for the line
+        of thrust and friction ``(1 - s) mu``; below 0 where the arch does not stand as it is.
     """
     ANY_FRICTION.require("mu", mu)
     share, _ = _least_share(arch, mu, 0.0)
@@ -212,10 +194,7 @@ def slack(arch: Arch, mu: float) -> float:
 def least_friction(arch: Arch) -> float | None:
     """Least friction coefficient with which the arch stands; 0 where none is needed.
 
-    Returns
-    -------
-    float or None
-        None where no friction suffices.
+    Returns: None where no friction suffices.
     """
     joints, spread = joints_of(arch), spread_of(arch.eta, arch.weight)
     return _least(lambda mu: thrust_bounds(joints, arch.eta, mu, spread), math.inf)[0]
@@ -224,10 +203,7 @@ def least_friction(arch: Arch) -> float | None:
 def weakest_joints(arch: Arch, mu: float) -> tuple[int, ...]:
     """Joints that act where strength is taken away, or added, until the arch barely stands.
 
-    Returns
-    -------
-    tuple of int
-        Indices into `half_joints`; none where no strength suffices.
+    Returns: Indices into `half_joints`; none where no strength suffices.
     """
     share, bounds = _least_share(arch, mu, ROUGHLY)
     if share is None:

@@ -34,17 +34,12 @@ BIT = {mode: np.uint8(1 << k) for k, mode in enumerate(ORDER)}
 class CriticalArrays:
     """Continuous arches at their least thickness; see `Critical` for one.
 
-    Parameters
-    ----------
-    eta : (...) float
-        Least thickness-to-radius ratio; nan where none up to 2 stands.
-    modes : (...) uint8
-        Collapse modes as bits, `ORDER` naming them; several bits on a line of the map.
-    thrust : (...) float
-        h; nan where no thrust is compatible with friction.
-    beta_r, beta_s : (...) float
-        Angles of the inner hinge and of the inner sliding joint [rad]; nan where the
-        mode has none.
+    `eta`, (...): Least thickness-to-radius ratio; nan where none up to 2 stands.
+    `modes`, (...) uint8: Collapse modes as bits, `ORDER` naming them; several bits on a line of
+        the map.
+    `thrust`, (...): h; nan where no thrust is compatible with friction.
+    `beta_r`, `beta_s`, (...): Angles of the inner hinge and of the inner sliding joint [rad];
+        nan where the mode has none.
     """
 
     eta: Array
@@ -115,14 +110,8 @@ def least_thicknesses(
 def stand_at(eta: Array, alpha: Array, mu: Array, weight: Weight) -> NDArray[np.bool_]:
     """Tell which arches stand at given ratios, with nothing allowed for round-off.
 
-    Parameters
-    ----------
-    eta, alpha, mu : (k,) float
-        As in `least_thicknesses`, unchecked.
-
-    Returns
-    -------
-    (k,) bool
+    `eta`, `alpha`, `mu`, (k,): As in `least_thicknesses`, unchecked.
+    Returns (k,).
     """
     found = np.empty(alpha.size, dtype=bool)
     for start in range(0, alpha.size, CHUNK):

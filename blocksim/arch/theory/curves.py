@@ -21,10 +21,7 @@ BRANCH, CURVE = 200, 400
 class RotationalBranch:
     """A branch of the purely rotational mode, eq. (7).
 
-    Parameters
-    ----------
-    half_angle, beta_r, eta, thrust : (k,) float
-        alpha and beta_r [rad], eta, h.
+    `half_angle`, `beta_r`, `eta`, `thrust`, (k,): alpha and beta_r [rad], eta, h.
     """
 
     half_angle: Array
@@ -37,14 +34,9 @@ class RotationalBranch:
 class SlidingCurve:
     """Sliding of an inner joint (9), and where the shoulder slides with it, (8).
 
-    Parameters
-    ----------
-    mu : (k,) float
-        Friction coefficient, from 0 to inf.
-    half_angle : (k,) float
-        alpha at which both joints slide, from 0 to pi [rad].
-    beta_s, thrust : (k,) float
-        Angle of the inner joint [rad]; h.
+    `mu`, (k,): Friction coefficient, from 0 to inf.
+    `half_angle`, (k,): alpha at which both joints slide, from 0 to pi [rad].
+    `beta_s`, `thrust`, (k,): Angle of the inner joint [rad]; h.
     """
 
     mu: Array
@@ -56,12 +48,9 @@ class SlidingCurve:
 def rotational_branches() -> tuple[RotationalBranch, RotationalBranch]:
     """Give the two branches of eq. (7), with its upper and with its lower signs.
 
-    Returns
-    -------
-    upper : RotationalBranch
-        From alpha = 0 to alpha_s-beta, where the inner hinge is farthest from the crown.
-    lower : RotationalBranch
-        From there to alpha_l, where the hinge is back at the crown.
+    Returns `upper`: From alpha = 0 to alpha_s-beta, where the inner hinge is farthest from the
+        crown.
+    Returns `lower`: From there to alpha_l, where the hinge is back at the crown.
     """
     special = special_angles()
     # Denser towards the end that both share, where alpha goes as a root.

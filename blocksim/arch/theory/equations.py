@@ -54,17 +54,9 @@ def touching_eta(
     one and the intrados of the other. For the centreline it is (1) or (2) solved for
     eta; for the sector the lever 1 + eta^2/12 of the weight makes it quadratic.
 
-    Parameters
-    ----------
-    thrust : float or array
-        h.
-    extrados, intrados : float or array
-        Angles of the two sections [rad].
-
-    Returns
-    -------
-    float or array
-        eta; at least `BEYOND` where no thickness will do, since a thicker annular sector
+    `thrust`: h.
+    `extrados`, `intrados`: Angles of the two sections [rad].
+    Returns: eta; at least `BEYOND` where no thickness will do, since a thicker annular sector
         also weighs farther out.
     """
     drop = np.cos(intrados) - np.cos(extrados)
@@ -82,15 +74,9 @@ def hinge_slope(thrust: float, extrados: float, beta: float, weight: Weight) -> 
 
     It is h_e - h of (4), times 2 - eta, with the weight at its own radius.
 
-    Parameters
-    ----------
-    thrust, extrados, beta : float
-        h; angles of the extrados hinge and of the place asked about [rad].
-
-    Returns
-    -------
-    float
-        Positive where `touching_eta` grows with beta, 0 at the inner hinge.
+    `thrust`, `extrados`, `beta`: h; angles of the extrados hinge and of the place asked about
+        [rad].
+    Returns: Positive where `touching_eta` grows with beta, 0 at the inner hinge.
     """
     eta = float(touching_eta(thrust, extrados, beta, weight))
     turn = 1.0 + (beta / float(np.tan(beta)) if beta > 0 else 1.0) - thrust

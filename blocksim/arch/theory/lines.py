@@ -33,20 +33,11 @@ def thrust_line(
 ) -> Value:
     """Eccentricity e_hat of the line of thrust, (10) and (11).
 
-    Parameters
-    ----------
-    angle : float or array
-        From the crown, not negative [rad].
-    thrust, crown_moment : float or array
-        h, and the moment m of the thrust about the centre of the arch (h where it acts at
-        the centre of the crown joint).
-    eta : float or array
-        Thickness-to-radius ratio.
-
-    Returns
-    -------
-    float or array
-        1 at the intrados, -1 at the extrados.
+    `angle`: From the crown, not negative [rad].
+    `thrust`, `crown_moment`: h, and the moment m of the thrust about the centre of the arch (h
+        where it acts at the centre of the crown joint).
+    `eta`: Thickness-to-radius ratio.
+    Returns: 1 at the intrados, -1 at the extrados.
     """
     moment = section_moment(angle, thrust, crown_moment, eta, weight)
     return -moment / (normal_force(angle, thrust) * eta / 2)
@@ -55,10 +46,7 @@ def thrust_line(
 def friction_line(angle: Value, thrust: Value, mu: Value) -> Value:
     """Eccentricity e_s_hat of the line of friction, (13); 0 at infinite friction.
 
-    Returns
-    -------
-    float or array
-        1 where an inner joint slides, -1 where the shoulder does.
+    Returns: 1 where an inner joint slides, -1 where the shoulder does.
     """
     shear = thrust * np.sin(angle) - angle * np.cos(angle)
     return -shear / (mu * normal_force(angle, thrust))

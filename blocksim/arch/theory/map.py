@@ -42,12 +42,8 @@ ON_DIVIDE = 1e-10
 class MapPoints:
     """What is found at points of the map.
 
-    Parameters
-    ----------
-    half_angle : (...) float
-        Half-angle alpha of the widest arch that stands there [rad].
-    modes : (...) uint8
-        Modes of the region as bits, see `CriticalArrays`; several on a line.
+    `half_angle`, (...): Half-angle alpha of the widest arch that stands there [rad].
+    `modes`, (...) uint8: Modes of the region as bits, see `CriticalArrays`; several on a line.
     """
 
     half_angle: Array
@@ -66,16 +62,12 @@ class MapPoints:
 class SpecialAngles:
     """Half-angles at which something of the map begins or ends [rad].
 
-    Parameters
-    ----------
-    widest_hinge : float
-        alpha_s-beta, where the inner hinge of the rotational mode is farthest from the crown.
-    hinge : float
-        beta_s-beta, that hinge.
-    zero_thrust : float
-        alpha_l, where the rotational mode ends in overturning, with its hinge at the crown.
-    limit : float
-        alpha_L, beyond which no arch stands, at any friction and thickness up to 2.
+    `widest_hinge`: alpha_s-beta, where the inner hinge of the rotational mode is farthest from
+        the crown.
+    `hinge`: beta_s-beta, that hinge.
+    `zero_thrust`: alpha_l, where the rotational mode ends in overturning, with its hinge at the
+        crown.
+    `limit`: alpha_L, beyond which no arch stands, at any friction and thickness up to 2.
     """
 
     widest_hinge: float
@@ -87,17 +79,9 @@ class SpecialAngles:
 def at_points(eta: ArrayLike, mu: ArrayLike, weight: Weight = "centreline") -> MapPoints:
     """Find region and half-angle of points of the map: alpha(eta, mu).
 
-    Parameters
-    ----------
-    eta : (...) float
-        In (0, 2].
-    mu : (...) float
-        Above 0, inf allowed; broadcast against `eta`.
-
-    Returns
-    -------
-    MapPoints
-        Of the broadcast shape.
+    `eta`, (...): In (0, 2].
+    `mu`, (...): Above 0, inf allowed; broadcast against `eta`.
+    Returns: Of the broadcast shape.
     """
     ratio, friction = checked_arrays(weight, eta=eta, mu=mu)
     shape_asked = ratio.shape
@@ -137,17 +121,9 @@ def divide_friction(half_angle: float) -> float:
 def iso_half_angle(half_angle: float, mu: ArrayLike, weight: Weight = "centreline") -> Curve:
     """Line of the map along which the half-angle is the same.
 
-    Parameters
-    ----------
-    half_angle : float
-        alpha, in (0, pi) [rad].
-    mu : (k,) float
-        Friction coefficients; those that need more than a thickness of 2 are left out.
-
-    Returns
-    -------
-    Curve
-        On the divide it goes on upwards, since there any thickness beyond is critical.
+    `half_angle`: alpha, in (0, pi) [rad].
+    `mu`, (k,): Friction coefficients; those that need more than a thickness of 2 are left out.
+    Returns: On the divide it goes on upwards, since there any thickness beyond is critical.
     """
     friction = np.asarray(mu, dtype=float)
     eta = least_thicknesses(half_angle, friction, weight).eta

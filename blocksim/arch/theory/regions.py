@@ -37,18 +37,12 @@ WIDE_ARCH = 2.3
 class Landmark:
     """A point of the map: where lines meet (Table 1), of a special angle, or on a line.
 
-    Parameters
-    ----------
-    name : str
-        Letter of Table 1, name of a special angle, or of a line.
-    half_angle, mu, eta : float
-        alpha [rad]; friction coefficient, inf allowed; thickness-to-radius ratio.
-    thrust, beta_r : float
-        h; angle of the inner hinge [rad].
-    beta_s : float or None
-        Angle of the inner sliding joint [rad]; None where no mode has it.
-    modes : tuple of Mode
-        All that coincide there, where they are told.
+    `name`: Letter of Table 1, name of a special angle, or of a line.
+    `half_angle`, `mu`, `eta`: alpha [rad]; friction coefficient, inf allowed;
+        thickness-to-radius ratio.
+    `thrust`, `beta_r`: h; angle of the inner hinge [rad].
+    `beta_s`: Angle of the inner sliding joint [rad]; None where no mode has it.
+    `modes`: All that coincide there, where they are told.
     """
 
     name: str
@@ -65,9 +59,7 @@ class Landmark:
 class Curve:
     """A line of the map.
 
-    Parameters
-    ----------
-    mu, eta : (k,) float
+    `mu`, `eta`, (k,).
     """
 
     mu: Array
@@ -77,10 +69,7 @@ class Curve:
 def divide_half_angle(mu: float) -> float:
     """Half-angle at which shoulder and inner joint slide together, (8) and (9) [rad].
 
-    Parameters
-    ----------
-    mu : float
-        Friction coefficient, above 0 and finite.
+    `mu`: Friction coefficient, above 0 and finite.
     """
     require(0 < mu < math.inf, "mu", mu, "above 0 and finite")
     thrusts, friction_angle = inner_slidings(np.array([mu]))[0], math.atan(mu)
@@ -103,10 +92,7 @@ def divide_half_angle(mu: float) -> float:
 def at_inner_sliding(mu: float, half_angle: float, weight: Weight) -> tuple[float, float]:
     """Thickness and inner hinge of an arch whose inner joint is about to slide.
 
-    Returns
-    -------
-    eta, beta_r : float
-        The thickness may exceed 2, and then no arch has it.
+    Returns `eta`, `beta_r`: The thickness may exceed 2, and then no arch has it.
     """
     eta, beta_r = _at_inner_sliding(np.array([mu]), np.array([half_angle]), weight)
     return float(eta[0]), float(beta_r[0])
@@ -185,10 +171,7 @@ def _landmark(name: str, mu: float, weight: Weight) -> Landmark:
 def divide(mu: ArrayLike, weight: Weight = "centreline") -> Curve:
     """Line on the left of which no thickness stands (modes ss | others).
 
-    Parameters
-    ----------
-    mu : (k,) float
-        Friction coefficients, above 0 and at most that of point B.
+    `mu`, (k,): Friction coefficients, above 0 and at most that of point B.
     """
     end = landmarks(weight)["B"].mu
     friction = _within(mu, 0.0, end, f"above 0 and at most {end:.10g}, where eta is 2")
@@ -200,10 +183,8 @@ def divide(mu: ArrayLike, weight: Weight = "centreline") -> Curve:
 def first_sliding(half_angle: ArrayLike, weight: Weight = "centreline") -> Curve:
     """Line on the right of which no joint slides (rrr | srr below T, rrs above).
 
-    Parameters
-    ----------
-    half_angle : (k,) float
-        Half-angles above 0 and below alpha_l, where the purely rotational mode ends [rad].
+    `half_angle`, (k,): Half-angles above 0 and below alpha_l, where the purely rotational mode
+        ends [rad].
     """
     alpha, end = np.asarray(half_angle, dtype=float), widest_rotational(weight)
     for angle in alpha.flat:
@@ -217,10 +198,7 @@ def first_sliding(half_angle: ArrayLike, weight: Weight = "centreline") -> Curve
 def equal_angles(mu: ArrayLike, weight: Weight = "centreline") -> Curve:
     """Line beta_r = beta_s, from S to the right (rrs | rsr).
 
-    Parameters
-    ----------
-    mu : (k,) float
-        Friction coefficients, that of point S or more, finite.
+    `mu`, (k,): Friction coefficients, that of point S or more, finite.
     """
     return _inner_line("S", mu, weight)
 

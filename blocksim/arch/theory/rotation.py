@@ -68,19 +68,12 @@ def inner_hinges(
 
     Newton's method on eq. (4) in y = beta^2, kept in a bracket.
 
-    Parameters
-    ----------
-    short : (k,) float
-        1 - h.
-    extrados : (k,) float
-        Angle of the extrados hinge: 0 for the crown, alpha for the shoulder [rad].
-    half_angle : (k,) float
-        alpha [rad].
-
-    Returns
-    -------
-    eta, square : (k,) float
-        Largest `touching_eta` over the intrados, and beta_r^2 [rad^2].
+    `short`, (k,): 1 - h.
+    `extrados`, (k,): Angle of the extrados hinge: 0 for the crown, alpha for the shoulder
+        [rad].
+    `half_angle`, (k,): alpha [rad].
+    Returns `eta`, `square`, (k,): Largest `touching_eta` over the intrados, and beta_r^2
+        [rad^2].
     """
     end = half_angle**2
     far = extrados**2
@@ -158,17 +151,10 @@ def _hinge_slope(
 def rotational_mode(alpha: Array, weight: Weight) -> tuple[Thrusts, Array, Array]:
     """Solve eqs (1), (3) and (4), up to the half-angle alpha_l.
 
-    Parameters
-    ----------
-    alpha : (k,) float
-        Half-angles [rad].
-
-    Returns
-    -------
-    thrusts : Thrusts
-        0 from alpha_l on, where each half overturns by itself.
-    eta, square : (k,) float
-        Thickness and beta_r^2 [rad^2]; nan from alpha_l on (`inner_hinges` has them).
+    `alpha`, (k,): Half-angles [rad].
+    Returns `thrusts`: 0 from alpha_l on, where each half overturns by itself.
+    Returns `eta`, `square`, (k,): Thickness and beta_r^2 [rad^2]; nan from alpha_l on
+        (`inner_hinges` has them).
     """
     widest, pieces = _rotational(weight)
     square = alpha * alpha

@@ -22,10 +22,7 @@ from blocksim.common.series import lag_series, sine_series
 class Thrusts(NamedTuple):
     """Scaled thrusts h, and 1 - h, each to its last digits.
 
-    Parameters
-    ----------
-    thrust, short : (k,) float
-        h may be inf, 1 - h then -inf.
+    `thrust`, `short`, (k,): h may be inf, 1 - h then -inf.
     """
 
     thrust: Array
@@ -46,15 +43,8 @@ def inner_slidings(mu: Array) -> tuple[Thrusts, Array]:
     eccentricity one, and beta_s = sin(E)/2. It is solved for E below mu = 1 and for
     pi - E above, where each is well conditioned.
 
-    Parameters
-    ----------
-    mu : (k,) float
-        Friction coefficients, above 0, inf allowed.
-
-    Returns
-    -------
-    beta_s : (k,) float
-        [rad]
+    `mu`, (k,): Friction coefficients, above 0, inf allowed.
+    Returns `beta_s`, (k,): [rad]
     """
     rough = mu < 1.0
     target = 2 * np.arctan(np.where(rough, mu, 1 / mu))
@@ -78,20 +68,11 @@ def inner_slidings(mu: Array) -> tuple[Thrusts, Array]:
 def thrust_intervals(alpha: Array, mu: Array) -> tuple[Thrusts, Thrusts, Array]:
     """Give the thrusts that no joint of the continuous arch resists by sliding.
 
-    Parameters
-    ----------
-    alpha : (k,) float
-        Half-angles [rad].
-    mu : (k,) float
-        Friction coefficients, above 0, inf allowed.
-
-    Returns
-    -------
-    lower, upper : Thrusts
-        Inner sliding below `lower`, shoulder sliding above `upper` (may be inf), (8); empty
-        where lower > upper.
-    beta_s : (k,) float
-        As `inner_slidings`.
+    `alpha`, (k,): Half-angles [rad].
+    `mu`, (k,): Friction coefficients, above 0, inf allowed.
+    Returns `lower`, `upper`: Inner sliding below `lower`, shoulder sliding above `upper` (may
+        be inf), (8); empty where lower > upper.
+    Returns `beta_s`, (k,): As `inner_slidings`.
     """
     friction_angle = np.arctan(mu)
     lower, beta_s = inner_slidings(mu)
@@ -118,15 +99,8 @@ def _shortfall(bent: Array, friction_angle: Array) -> Array:
 def shoulder_slip(half_angle: float, mu: float, short: float) -> float:
     """Tell how far the shoulder is from sliding at a thrust, (8) times its denominators.
 
-    Parameters
-    ----------
-    half_angle, mu, short : float
-        alpha [rad], friction coefficient, 1 - h.
-
-    Returns
-    -------
-    float
-        Above 0 where it slides; 0 at the half-angle of the divide.
+    `half_angle`, `mu`, `short`: alpha [rad], friction coefficient, 1 - h.
+    Returns: Above 0 where it slides; 0 at the half-angle of the divide.
     """
     friction_angle = math.atan(mu)
     bent = half_angle - friction_angle

@@ -54,14 +54,9 @@ class Solid:
 class SolidBlock:
     """A block of an assembly in space.
 
-    Parameters
-    ----------
-    hulls : tuple of Polyhedron
-        The convex parts it consists of.
-    weight : float
-        [N]
-    centre : (3,) float
-        Centre of mass [m].
+    `hulls`: The convex parts it consists of.
+    `weight`: [N]
+    `centre`, (3,): Centre of mass [m].
     """
 
     hulls: tuple[Polyhedron, ...]

@@ -23,14 +23,9 @@ ALONG = 0.999
 class Contact(NamedTuple):
     """Where two polyhedra touch.
 
-    Parameters
-    ----------
-    points : (k, 3) float
-        Corners of a polygon, ends of a segment, or a point [m].
-    normal : (3,) float
-        Unit normal, from the first into the second.
-    gap : float
-        How far apart they are drawn, below 0 where they overlap [m].
+    `points`, (k, 3): Corners of a polygon, ends of a segment, or a point [m].
+    `normal`, (3,): Unit normal, from the first into the second.
+    `gap`: How far apart they are drawn, below 0 where they overlap [m].
     """
 
     points: Array
@@ -50,15 +45,8 @@ def contact(first: Polyhedron, second: Polyhedron, slack: float) -> Contact | Ov
     Planes that part them are those of their faces, and those along an edge of each
     (separating axes; Gottschalk, Lin and Manocha 1996).
 
-    Parameters
-    ----------
-    slack : float
-        Gaps and overlaps up to this are closed [m].
-
-    Returns
-    -------
-    Contact, Overlap or None
-        None where they do not touch, or along the rim of their faces only.
+    `slack`: Gaps and overlaps up to this are closed [m].
+    Returns: None where they do not touch, or along the rim of their faces only.
     """
     normals, gaps = _by_faces(first, second)
     if gaps.max() > slack:

@@ -44,12 +44,8 @@ Corners = Annotated[list[Point], listed(1, MOST_CORNERS)]
 class SolidEntry(Written):
     """Entry of `blocks` in space, as `BlockEntry` in the plane.
 
-    Parameters
-    ----------
-    vertices : list of point
-        Corners of a convex polyhedron [m], in any order.
-    polyhedra : list of list of point
-        Convex parts that move as one block [m], instead of `vertices`.
+    `vertices`: Corners of a convex polyhedron [m], in any order.
+    `polyhedra`: Convex parts that move as one block [m], instead of `vertices`.
     """
 
     id: NewId
@@ -64,10 +60,7 @@ class SolidEntry(Written):
 class FaceEntry(Written):
     """Entry of `joints` in space, as `JointEntry` in the plane.
 
-    Parameters
-    ----------
-    points : list of point
-        Corners of the polygon that both share, ends of a segment, or a point [m].
+    `points`: Corners of the polygon that both share, ends of a segment, or a point [m].
     """
 
     a: Id
@@ -92,10 +85,7 @@ class SpatialLoadEntry(Written):
 class SpatialAround(Said):
     """What a structure file in space says besides its blocks, of the keys of `Around`.
 
-    Parameters
-    ----------
-    dead : list of load
-        Loads that stay as they are; by default gravity, `{"body": [0, 0, -1]}`.
+    `dead`: Loads that stay as they are; by default gravity, `{"body": [0, 0, -1]}`.
     """
 
     dead: Annotated[list[SpatialLoadEntry], listed(0, MOST_SOLIDS)] | None = None
@@ -110,15 +100,10 @@ AROUND = tuple(field.name for field in fields(SpatialAround))
 class SpatialFile(SpatialAround):
     """A structure file of blocks in space as written: the keys of `SpatialAround`, and these.
 
-    Parameters
-    ----------
-    blocks : list of block
-        At least two, one of them fixed.
-    joints : list of joint
-        By default found.
-    tolerance : float
-        Gaps and overlaps up to this are closed [m], but no more than a tenth of the thinner
-        block; by default what rounding explains.
+    `blocks`: At least two, one of them fixed.
+    `joints`: By default found.
+    `tolerance`: Gaps and overlaps up to this are closed [m], but no more than a tenth of the
+        thinner block; by default what rounding explains.
     """
 
     blocks: Annotated[list[SolidEntry], listed(2, MOST_SOLIDS)]
@@ -151,10 +136,7 @@ def is_spatial(data: object) -> bool:
 def problem_in_space(data: object) -> Problem[SpatialAssembly]:
     """Make a problem of what a structure file in space says.
 
-    Parameters
-    ----------
-    data : object
-        A dict with the keys of `SpatialFile`.
+    `data`: A dict with the keys of `SpatialFile`.
     """
     written = as_said(SpatialFile, data)
     solids = _solids(written)
@@ -178,10 +160,7 @@ def problem_of_solids(
 ) -> Problem[SpatialAssembly]:
     """Make a problem of an assembly and of what a file says besides.
 
-    Parameters
-    ----------
-    solids : sequence of Solid
-        Of which the assembly was made, each with a name of its own.
+    `solids`: Of which the assembly was made, each with a name of its own.
     """
     acts = acting_of(written, LoadsOf(solids, SPACE), np.array(SpatialAssembly.down))
     return acts.on(assembly, written.friction)

@@ -12,10 +12,8 @@ from blocksim.blocks.space.assembly import SpatialAssembly
 def parted(assembly: SpatialAssembly, poses: Array) -> tuple[Array, Array]:
     """Return how far each point of each joint opens and slips, (points,) each [size].
 
-    Parameters
-    ----------
-    poses : (blocks, 6) float
-        Centres x, y, z in units of the size, and rotation vectors since they were built.
+    `poses`, (blocks, 6): Centres x, y, z in units of the size, and rotation vectors since they
+        were built.
     """
     joints, size = assembly.joints, assembly.size
     count = [len(each.points) for each in joints]

@@ -27,14 +27,9 @@ SAME = 1 - 1e-14
 class Face:
     """A face of a convex polyhedron.
 
-    Parameters
-    ----------
-    normal : (3,) float
-        Unit normal, outwards.
-    offset : float
-        Of its plane, ``normal @ x`` [m].
-    corners : (k, 3) float
-        Counter-clockwise, seen from outside [m].
+    `normal`, (3,): Unit normal, outwards.
+    `offset`: Of its plane, ``normal @ x`` [m].
+    `corners`, (k, 3): Counter-clockwise, seen from outside [m].
     """
 
     normal: Array
@@ -46,12 +41,8 @@ class Face:
 class Polyhedron:
     """The hull of points in space.
 
-    Parameters
-    ----------
-    corners : (k, 3) float
-        Points of which it is the hull [m], in any order.
-    slack : float
-        How far the corners of one face may lie off its plane [m], where they were rounded.
+    `corners`, (k, 3): Points of which it is the hull [m], in any order.
+    `slack`: How far the corners of one face may lie off its plane [m], where they were rounded.
 
     Examples
     --------
@@ -189,9 +180,7 @@ class Polyhedron:
     def second_moment(self, about: Array) -> Array:
         """Return the integral of ``x x^T`` over it, x from a point [m5], (3, 3).
 
-        Parameters
-        ----------
-        about : (3,) float
+        `about`, (3,).
         """
         legs = self.triangles - about
         sums = legs.sum(axis=1)

@@ -48,16 +48,9 @@ RELATIVE = 1e-8
 def by_active_set(step: Step, guess: Answer, precision: float) -> list[Answer]:
     """Look for the solution that is near a guess.
 
-    Parameters
-    ----------
-    precision : float
-        Yield of contacts at which it counts as solved [g].
-
-    Returns
-    -------
-    list of Answer
-        Those on the way. The last is the solution if it is settled; `residual` of others may
-        not be known.
+    `precision`: Yield of contacts at which it counts as solved [g].
+    Returns: Those on the way. The last is the solution if it is settled; `residual` of others
+        may not be known.
     """
     x, contacts, circle = guess.x, guess.contacts, _Circle()
     # Forces stop what is closed: accelerations will be as large.

@@ -65,14 +65,10 @@ def _to_the_least(
 ) -> float:
     """Return how far along a way a convex, piecewise quadratic function is least.
 
-    Parameters
-    ----------
-    way, gradient : (3 blocks,) float
-    trial, turn : (joints, k) float
-        Forces of the constraints at the start, active where positive, and their change
-        over the way.
-    stiffness : float
-        An active constraint adds turn^2 / stiffness to the second derivative.
+    `way`, `gradient`, (3 blocks,).
+    `trial`, `turn`, (joints, k): Forces of the constraints at the start, active where positive,
+        and their change over the way.
+    `stiffness`: An active constraint adds turn^2 / stiffness to the second derivative.
     """
     if not np.any((trial > 0) != (trial + turn > 0)):
         return 1.0

@@ -34,14 +34,10 @@ class Bands:
     Rows have shape (joints, k, 6), in space (joints, k, 12): each is a velocity of a joint,
     from those of its two blocks.
 
-    Parameters
-    ----------
-    before, after : (joints,) int
-        Blocks on both sides of each joint, -1 for the ground.
-    points : (blocks, 2) float, optional
-        Where the blocks are: numbered along an axis, those of a wall that touch are near.
-    each : int
-        Unknowns of a block.
+    `before`, `after`, (joints,): Blocks on both sides of each joint, -1 for the ground.
+    `points`, (blocks, 2): Where the blocks are: numbered along an axis, those of a wall that
+        touch are near.
+    `each`: Unknowns of a block.
     """
 
     def __init__(
@@ -230,11 +226,8 @@ class System:
     Wide ones are factored once in a while only: what has changed since is of low rank, and is
     taken into account by the formula of Sherman, Morrison and Woodbury.
 
-    Parameters
-    ----------
-    band : (places,) float
-        The matrix, as from `Bands.band`.
-    right : (3 blocks,) float
+    `band`, (places,): The matrix, as from `Bands.band`.
+    `right`, (3 blocks,).
     """
 
     def __init__(self, bands: Bands, band: Array, right: Array) -> None:
@@ -267,11 +260,8 @@ class System:
 class _Factored:
     """A system that was factored, and its changes since: 1 + matrix + columns rows.
 
-    Parameters
-    ----------
-    solve : callable
-        Solves what was factored.
-    right : (3 blocks,) float
+    `solve`: Solves what was factored.
+    `right`, (3 blocks,).
     """
 
     def __init__(self, solve: Callable[[Array], Array], right: Array) -> None:

@@ -26,15 +26,11 @@ class Cones:
     Steep ones take what normals they have, down to none, and have the normal itself as a third
     edge; where other joints have a third, it is far from any contact.
 
-    Parameters
-    ----------
-    edges : (joints, 4 or 6, 6) float
-        Velocities along the edges: up of both contacts, down of both, normal ones.
-    offset : (joints, 4 or 6) float
-        The same without acceleration.
-    norm, lean : (joints, 1) float
-        What normals were divided by, and tangents multiplied with.
-    steep : (joints, 1) bool
+    `edges`, (joints, 4 or 6, 6): Velocities along the edges: up of both contacts, down of both,
+        normal ones.
+    `offset`, (joints, 4 or 6): The same without acceleration.
+    `norm`, `lean`, (joints, 1): What normals were divided by, and tangents multiplied with.
+    `steep`, (joints, 1).
     """
 
     edges: Array

@@ -41,10 +41,7 @@ FLATTEST = 1e-6
 class Friction:
     """The friction of every joint.
 
-    Parameters
-    ----------
-    mu : (joints, 1) float
-        Coefficients, 0 and inf allowed.
+    `mu`, (joints, 1): Coefficients, 0 and inf allowed.
     """
 
     mu: Array
@@ -100,10 +97,7 @@ class Friction:
     def excess(self, forces: Array) -> Array:
         """Return how far friction is beyond its cone, (joints, 2); as pressure if steep.
 
-        Parameters
-        ----------
-        forces : (joints, 4) float
-            Pressure at both contacts, then friction.
+        `forces`, (joints, 4): Pressure at both contacts, then friction.
         """
         pressure, size = forces[:, :2], np.abs(forces[:, 2:])
         if not self.some_steep:
@@ -114,16 +108,10 @@ class Friction:
     def cut(self, place: Array) -> tuple[Array, Contacts]:
         """Return the forces that contacts can carry, and what the contacts do.
 
-        Parameters
-        ----------
-        place : (joints, 4) float
-            Normal forces of both contacts, y in the place of q where friction is steep, then
-            tangential ones.
-
-        Returns
-        -------
-        forces : (joints, 4) float
-        contacts : (joints, 2) int
+        `place`, (joints, 4): Normal forces of both contacts, y in the place of q where friction
+            is steep, then tangential ones.
+        Returns `forces`, (joints, 4).
+        Returns `contacts`, (joints, 2).
         """
         if not self.some_steep:
             return cut(place, self.mu)
@@ -140,10 +128,7 @@ class Friction:
         at a contact without pressure beside one that has all of it, friction keeps that
         contact sliding, and moves over by a share of `FLATTEST` only in each system solved.
 
-        Parameters
-        ----------
-        forces : (joints, 4) float
-            Pressure at both contacts, then friction.
+        `forces`, (joints, 4): Pressure at both contacts, then friction.
         """
         if not self.some_steep:
             return forces
@@ -161,12 +146,8 @@ class Friction:
     def as_said(self, glued: Array, contacts: Contacts, held: Array) -> Array:
         """Return forces of contacts that do as said, with what friction is known by itself.
 
-        Parameters
-        ----------
-        contacts : (joints, 2) int
-            What they do.
-        held : (joints, 2) float
-            Size of their friction; looked at where they slide.
+        `contacts`, (joints, 2): What they do.
+        `held`, (joints, 2): Size of their friction; looked at where they slide.
         """
         return ContactStatus(self, contacts).forces(glued, held)
 
@@ -174,22 +155,12 @@ class Friction:
 class ContactStatus:
     """Contacts that do as said: what makes forces of those of springs.
 
-    Parameters
-    ----------
-    contacts : (joints, 2) int
-
-    Attributes
-    ----------
-    some_slide : bool
-        Whether any contact slides.
-    side : (joints, 2) float
-        1 and -1 where contacts slide, up and down.
-    slope : (joints, 2) float
-        Friction per pressure where that is known and a contact slides.
-    own : (joints, 2) bool or None
-        Contacts whose friction is an unknown of its own, if there are any.
-    springs : (joints, 4) float
-        1 where a force is that of its spring, else 0.
+    `contacts`, (joints, 2).
+    `some_slide`: Whether any contact slides.
+    `side`, (joints, 2): 1 and -1 where contacts slide, up and down.
+    `slope`, (joints, 2): Friction per pressure where that is known and a contact slides.
+    `own`, (joints, 2): Contacts whose friction is an unknown of its own, if there are any.
+    `springs`, (joints, 4): 1 where a force is that of its spring, else 0.
     """
 
     def __init__(self, friction: Friction, contacts: Contacts) -> None:
@@ -207,10 +178,7 @@ class ContactStatus:
     def forces(self, glued: Array, held: Array) -> Array:
         """Return the forces of contacts.
 
-        Parameters
-        ----------
-        held : (joints, 2) float
-            Size of friction; looked at where it is an unknown of its own.
+        `held`, (joints, 2): Size of friction; looked at where it is an unknown of its own.
         """
         forces: Array = self.springs * glued
         if self.some_slide:
@@ -225,15 +193,9 @@ class ContactStatus:
 def cut(glued: Array, mu: Array | float) -> tuple[Array, Contacts]:
     """Return the forces that contacts can carry, and what the contacts do.
 
-    Parameters
-    ----------
-    mu : float or (joints, 1) float
-        Finite.
-
-    Returns
-    -------
-    forces : (joints, 4) float
-    contacts : (joints, 2) int
+    `mu`, float or (joints, 1): Finite.
+    Returns `forces`, (joints, 4).
+    Returns `contacts`, (joints, 2).
     """
     along = glued[:, 2:]
     pressure = np.maximum(glued[:, :2], 0.0)
@@ -248,12 +210,8 @@ def cut(glued: Array, mu: Array | float) -> tuple[Array, Contacts]:
 def leaning(rows: Array, slope: Array) -> Array:
     """Return rows with pressure's turned to act with its friction where a contact slides.
 
-    Parameters
-    ----------
-    rows : (..., 4, 6) float
-        Normal velocities of the two contacts, then the tangential ones.
-    slope : (..., 2) float
-        As of `ContactStatus`.
+    `rows`, (..., 4, 6): Normal velocities of the two contacts, then the tangential ones.
+    `slope`, (..., 2): As of `ContactStatus`.
     """
     if not slope.any():
         return rows
@@ -267,14 +225,9 @@ def edges(mu: Array, steep: NDArray[np.bool_]) -> tuple[Array, Array]:
 
     Where a contact with steep friction slides, the size of its friction stands for q.
 
-    Parameters
-    ----------
-    mu : (joints,) float
-    steep : (joints,) bool
-
-    Returns
-    -------
-    of_normal, of_tangential : (joints, pieces, 2) float
+    `mu`, (joints,).
+    `steep`, (joints,).
+    Returns `of_normal`, `of_tangential`, (joints, pieces, 2).
     """
     flat = np.where(steep, 1 / np.maximum(mu, STEEP), 1.0)
     most = np.where(steep, 1.0, mu)

@@ -18,12 +18,8 @@ def first_closing(gap: Array, rate: Array, later: Array, at_end: Array, step: fl
 
     Between its ends a gap follows the cubic with these values and slopes.
 
-    Parameters
-    ----------
-    gap, later : (contacts,) float
-        At the start and at the end, where all are below 0.
-    rate, at_end : (contacts,) float
-        Their rates of change.
+    `gap`, `later`, (contacts,): At the start and at the end, where all are below 0.
+    `rate`, `at_end`, (contacts,): Their rates of change.
     """
     shares = np.linspace(0.0, 1.0, PARTS + 1)[1:]
 

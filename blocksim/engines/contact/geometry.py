@@ -40,15 +40,11 @@ INWARDS = np.array([1.0, -1.0])
 class Touch:
     """Contacts at one instant.
 
-    Parameters
-    ----------
-    gap : (joints, 2) float
-        At the inner and outer end, below 0 where blocks overlap.
-    rows : (joints, 4, 6) float
-        Velocities of `after` relative to `before` from those of both blocks, along the
-        normals of the two contacts, then along their tangents.
-    faces : (3, pairs) int or None
-        With which faces polygons touch that have met, as `Polygons.touch` takes them.
+    `gap`, (joints, 2): At the inner and outer end, below 0 where blocks overlap.
+    `rows`, (joints, 4, 6): Velocities of `after` relative to `before` from those of both
+        blocks, along the normals of the two contacts, then along their tangents.
+    `faces`, (3, pairs): With which faces polygons touch that have met, as `Polygons.touch`
+        takes them.
     """
 
     gap: Array
@@ -85,14 +81,8 @@ class Geometry:
     def touch(self, poses: Array) -> tuple[Touch, NDArray[np.bool_]]:
         """Find the contacts, and which joints still are joints.
 
-        Parameters
-        ----------
-        poses : (blocks, 3) float
-            Centres of mass x, y and rotations, scaled.
-
-        Returns
-        -------
-        holds : (joints,) bool
+        `poses`, (blocks, 3): Centres of mass x, y and rotations, scaled.
+        Returns `holds`, (joints,).
         """
         count = len(self._length)
         placed = np.concatenate([poses, np.zeros((1, 3))])[self._sides]
@@ -120,12 +110,8 @@ class Geometry:
     def _on_face(self, one: Complex, two: Complex, apart: Complex) -> NDArray[np.bool_]:
         """Tell which corners are on their faces still, and touch them with nothing else.
 
-        Parameters
-        ----------
-        one, two : (joints, 1) complex
-            Directions of the faces of `before` and `after`.
-        apart : (joints, 2) complex
-            From the corners of `before` to those of `after`.
+        `one`, `two`, (joints, 1) complex: Directions of the faces of `before` and `after`.
+        `apart`, (joints, 2) complex: From the corners of `before` to those of `after`.
         """
         one, two, apart = one[self._corners], two[self._corners], apart[self._corners]
         after = self._carried_by_after
@@ -143,14 +129,9 @@ class Geometry:
 def rows_at(points: Complex, tangents: Complex, centres: Complex, moves: Array) -> Array:
     """Return velocities at two contacts of each pair from those of both blocks, as in `Touch`.
 
-    Parameters
-    ----------
-    points, tangents : (pairs, 2) complex
-        Of the two contacts.
-    centres : (pairs, 2) complex
-        Centres of mass of both blocks.
-    moves : (pairs, 2) float
-        -1 for the first block, 1 for the second, 0 for what stays.
+    `points`, `tangents`, (pairs, 2) complex: Of the two contacts.
+    `centres`, (pairs, 2) complex: Centres of mass of both blocks.
+    `moves`, (pairs, 2): -1 for the first block, 1 for the second, 0 for what stays.
     """
     axes = np.concatenate([-1j * tangents, tangents], axis=1)[..., None]
     arms = np.concatenate([points, points], axis=1)[..., None] - centres[:, None]

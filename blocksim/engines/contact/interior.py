@@ -46,19 +46,10 @@ CAREFUL = 0.1
 def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Array, int]:
     """Follow the central path.
 
-    Parameters
-    ----------
-    dilates : bool
-        Whether friction does; Coulomb's must not be steep.
-
-    Returns
-    -------
-    x : (3 blocks,) float
-        Accelerations.
-    pressed : (joints, 4 or 6) float
-        Forces along the edges.
-    systems : int
-        Banded systems factored.
+    `dilates`: Whether friction does; Coulomb's must not be steep.
+    Returns `x`, (3 blocks,): Accelerations.
+    Returns `pressed`, (joints, 4 or 6): Forces along the edges.
+    Returns `systems`: Banded systems factored.
     """
     edges, offset = cones.edges, cones.offset
     bands, free = step.bands, step.free

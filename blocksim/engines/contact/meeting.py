@@ -22,12 +22,8 @@ PREFER = 1e-9
 class Polygons:
     """Polygons that move, followed by polygons that stay.
 
-    Parameters
-    ----------
-    moving : sequence of (k, 2) float
-        Corners, counter-clockwise, from the centre of mass, scaled.
-    fixed : sequence of (k, 2) float
-        Corners where they are.
+    `moving`, sequence of (k, 2): Corners, counter-clockwise, from the centre of mass, scaled.
+    `fixed`, sequence of (k, 2): Corners where they are.
     """
 
     def __init__(self, moving: Sequence[Array], fixed: Sequence[Array]) -> None:
@@ -68,13 +64,11 @@ class Polygons:
     ) -> Touch:
         """Find two contacts for each pair, as `Geometry` does for each joint.
 
-        Parameters
-        ----------
-        poses : (polygons that move, 3) float
-        before, after : (pairs,) int
-        by : (3, pairs) int, optional
-            Faces to touch with: whether that of `after` gives the normal, which one does, and
-            which one of the other polygon looks at it. By default those that do so there.
+        `poses`, (polygons that move, 3).
+        `before`, `after`, (pairs,).
+        `by`, (3, pairs): Faces to touch with: whether that of `after` gives the normal, which
+            one does, and which one of the other polygon looks at it. By default those that do
+            so there.
         """
         corners, faces = self._placed(poses)
         if by is None:

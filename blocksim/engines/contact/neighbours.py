@@ -34,12 +34,8 @@ FAR = 1e3
 class Neighbours:
     """The blocks of an assembly, what they stand on, and who is near whom.
 
-    Attributes
-    ----------
-    before, after : (pairs,) int
-        Blocks of each pair with contacts, -1 for what stays.
-    keys : (pairs,) int
-        Names that pairs keep while the list changes.
+    `before`, `after`, (pairs,): Blocks of each pair with contacts, -1 for what stays.
+    `keys`, (pairs,): Names that pairs keep while the list changes.
     """
 
     def __init__(self, assembly: Assembly) -> None:
@@ -61,17 +57,9 @@ class Neighbours:
     def touch(self, poses: Array, fastest: Callable[[], float]) -> Touch:
         """Find the contacts of all pairs, and which pairs there are.
 
-        Parameters
-        ----------
-        poses : (blocks, 3) float
-            Centres of mass x, y and rotations, scaled.
-        fastest : callable
-            Tells how far any corner may go in a step.
-
-        Returns
-        -------
-        Touch
-            In the order of `before` and `after`, which may have changed.
+        `poses`, (blocks, 3): Centres of mass x, y and rotations, scaled.
+        `fastest`: Tells how far any corner may go in a step.
+        Returns: In the order of `before` and `after`, which may have changed.
         """
         touch, holds = self._joints.touch(poses)
         if not self._loose:

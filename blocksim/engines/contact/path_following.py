@@ -114,17 +114,12 @@ def path_from_guess(step: Step, guess: Answer, most: int = NEAR_PIECES) -> Answe
 class _Start:
     """Where a path begins.
 
-    Parameters
-    ----------
-    x : (3 blocks,) float
-    forces : (joints, 4) float
-        As if glued, but for steep friction that slides, whose size stands for the normal force.
-    contacts : (joints, 2) int
-        What they do; changed along the path.
-    push : (joints, 4) float
-        How forces as if glued change at x as `left` falls by 1.
-    pull : (3 blocks,) float
-        How forces on blocks do.
+    `x`, (3 blocks,).
+    `forces`, (joints, 4): As if glued, but for steep friction that slides, whose size stands
+        for the normal force.
+    `contacts`, (joints, 2): What they do; changed along the path.
+    `push`, (joints, 4): How forces as if glued change at x as `left` falls by 1.
+    `pull`, (3 blocks,): How forces on blocks do.
     """
 
     x: Array
@@ -153,11 +148,8 @@ def _end(step: Step, start: _Start, preload: Array, most: int) -> Answer | None:
 def _follow(step: Step, start: _Start, most: int) -> tuple[Array, Array, int] | None:
     """Follow a path until nothing is left, over so many pieces at most.
 
-    Returns
-    -------
-    x : (3 blocks,) float
-    held : (joints, 2) float
-        Friction of contacts that slide with steep friction.
+    Returns `x`, (3 blocks,).
+    Returns `held`, (joints, 2): Friction of contacts that slide with steep friction.
     """
     path = _Path(step, start)
     for piece in range(1, most):
@@ -266,13 +258,10 @@ def _acting(
 ) -> tuple[Array, Array]:
     """Return how forces of springs act, and the stiffness of springs.
 
-    Parameters
-    ----------
-    rows : (..., 4, 6) float
-    contacts : (..., 2) int
-    lean : (..., 1) float
-    own : (..., 2) bool
-        Contacts whose friction is an unknown of its own.
+    `rows`, (..., 4, 6).
+    `contacts`, (..., 2).
+    `lean`, (..., 1).
+    `own`, (..., 2): Contacts whose friction is an unknown of its own.
     """
     closed = (contacts != OPEN) & ~own
     weight = STIFF * np.concatenate([closed, contacts == STICKS], axis=-1)

@@ -71,18 +71,13 @@ may not close any better; from nothing if contacts are told, as a path tells the
 class Solution:
     """Accelerations and contact forces of a step.
 
-    Parameters
-    ----------
-    acceleration : (blocks, 3) float
-    forces : (joints, 4) float
-        Pressure at the two contacts of each joint, then friction [mean weights].
-    contacts : (joints, 2) int
-        What each contact does.
-    residual : float
-        Worst of force imbalance (mean weights), penetration rate and complementarity [g],
-        over the largest acceleration where that is above 1.
-    iterations : int
-        Banded systems solved.
+    `acceleration`, (blocks, 3).
+    `forces`, (joints, 4): Pressure at the two contacts of each joint, then friction [mean
+        weights].
+    `contacts`, (joints, 2): What each contact does.
+    `residual`: Worst of force imbalance (mean weights), penetration rate and complementarity
+        [g], over the largest acceleration where that is above 1.
+    `iterations`: Banded systems solved.
     """
 
     acceleration: Array
@@ -102,16 +97,10 @@ class Solution:
 class ContactProblem:
     """Blocks, what they touch, and friction: everything that stays from step to step.
 
-    Parameters
-    ----------
-    before, after : (joints,) int
-        Blocks on both sides of each joint, -1 for the ground.
-    mass : (blocks, 3) float
-        Mass, mass and moment of inertia, in mean masses.
-    mu : float or (joints,) float
-        Friction coefficient of all joints, or of each; 0 and inf allowed.
-    points : (blocks, 2) float, optional
-        Where the blocks are, about; it makes no difference but in time.
+    `before`, `after`, (joints,): Blocks on both sides of each joint, -1 for the ground.
+    `mass`, (blocks, 3): Mass, mass and moment of inertia, in mean masses.
+    `mu`, float or (joints,): Friction coefficient of all joints, or of each; 0 and inf allowed.
+    `points`, (blocks, 2): Where the blocks are, about; it makes no difference but in time.
     """
 
     def __init__(
@@ -137,19 +126,12 @@ class ContactProblem:
     ) -> Solution:
         """Solve one step.
 
-        Parameters
-        ----------
-        rows : (joints, 4, 6) float
-            Normal velocities at the two contacts from those of the two blocks (N), then
-            the tangential ones (T).
-        rates : (joints, 4) float
-            The same velocities without acceleration, over the step (n0, t0).
-        free : (blocks, 3) float
-            Accelerations without contact (f).
-        start : Solution, optional
-            Of a similar step.
-        precision : float
-            Yield of contacts at which the step counts as solved [g].
+        `rows`, (joints, 4, 6): Normal velocities at the two contacts from those of the two
+            blocks (N), then the tangential ones (T).
+        `rates`, (joints, 4): The same velocities without acceleration, over the step (n0, t0).
+        `free`, (blocks, 3): Accelerations without contact (f).
+        `start`: Of a similar step.
+        `precision`: Yield of contacts at which the step counts as solved [g].
         """
         if not len(rates):
             # Nothing touches anything.
@@ -235,12 +217,8 @@ class ContactProblem:
 class _Tried:
     """Answers that guesses have led to.
 
-    Parameters
-    ----------
-    precision : float
-        Yield of contacts at which it counts as solved [g].
-    moves : bool
-        Whether the last step is known.
+    `precision`: Yield of contacts at which it counts as solved [g].
+    `moves`: Whether the last step is known.
     """
 
     def __init__(self, step: Step, precision: float, *, moves: bool) -> None:

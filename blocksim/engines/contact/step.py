@@ -38,18 +38,12 @@ STEEPEST = 3.0
 class Answer:
     """Accelerations and forces in a step, right or not.
 
-    Parameters
-    ----------
-    x : (3 blocks,) float
-    forces : (joints, 4) float
-    contacts : (joints, 2) int
-        What the contacts do.
-    residual : float
-        `Step.residual` of it; inf where it is not known.
-    systems : int
-        Banded systems it took.
-    is_settled : bool
-        Whether no contact has to do anything else, and none yields.
+    `x`, (3 blocks,).
+    `forces`, (joints, 4).
+    `contacts`, (joints, 2): What the contacts do.
+    `residual`: `Step.residual` of it; inf where it is not known.
+    `systems`: Banded systems it took.
+    `is_settled`: Whether no contact has to do anything else, and none yields.
     """
 
     x: Array
@@ -70,14 +64,9 @@ class Answer:
 class Step:
     """A step, in accelerations times the root of mass.
 
-    Parameters
-    ----------
-    rows : (joints, 4, 6) float
-        Normal velocities of the two contacts, then the tangential ones.
-    rates : (joints, 4) float
-        The same velocities without acceleration, over the step.
-    free : (3 blocks,) float
-        Accelerations without contact.
+    `rows`, (joints, 4, 6): Normal velocities of the two contacts, then the tangential ones.
+    `rates`, (joints, 4): The same velocities without acceleration, over the step.
+    `free`, (3 blocks,): Accelerations without contact.
     """
 
     bands: Bands
@@ -136,15 +125,10 @@ class Slides:
     equation that goes with it is pressure's: -k n = w / mu. There are few such contacts; they
     border the banded system of the others.
 
-    Parameters
-    ----------
-    rows : (joints, 4, 6) float
-        Normal velocities of the two contacts, then the tangential ones.
-    contacts : (joints, 2) int
-    own : (joints, 2) bool
-        Which of them these are.
-    flat : (joints, 1) float
-        Pressure per friction.
+    `rows`, (joints, 4, 6): Normal velocities of the two contacts, then the tangential ones.
+    `contacts`, (joints, 2).
+    `own`, (joints, 2): Which of them these are.
+    `flat`, (joints, 1): Pressure per friction.
     """
 
     def __init__(
@@ -167,19 +151,12 @@ class Slides:
     ) -> tuple[Array, Array]:
         """Solve the bordered system.
 
-        Parameters
-        ----------
-        solve : callable
-            Takes what comes besides the right side, shape (3 blocks, k), and returns the
+        `solve`: Takes what comes besides the right side, shape (3 blocks, k), and returns the
             solutions of the system with the right side first, shape (3 blocks, 1 + k).
-        target : (joints, 2) float
-            Normal velocities that would leave contacts without pressure.
-
-        Returns
-        -------
-        x : (3 blocks,) float
-        held : (joints, 2) float
-            Friction of these contacts, 0 elsewhere. All is nan where the system is singular.
+        `target`, (joints, 2): Normal velocities that would leave contacts without pressure.
+        Returns `x`, (3 blocks,).
+        Returns `held`, (joints, 2): Friction of these contacts, 0 elsewhere. All is nan where
+            the system is singular.
         """
         count, place = len(self._joint), self._bands.place[self._joint]
         columns = np.zeros((self._bands.size + 1, count))
@@ -199,11 +176,8 @@ class Slides:
 class Linear:
     """A step while its contacts do as said, with springs: one banded system, factored once.
 
-    Parameters
-    ----------
-    contacts : (joints, 2) int
-    stiffness : float
-        Of the springs.
+    `contacts`, (joints, 2).
+    `stiffness`: Of the springs.
     """
 
     def __init__(self, step: Step, contacts: Contacts, stiffness: float) -> None:
@@ -224,11 +198,8 @@ class Linear:
 
         And that of `held`, the friction of contacts that slide with steep friction.
 
-        Parameters
-        ----------
-        glued : (joints, 4) float
-            Forces of the springs at x.
-        held : (joints, 2) float
+        `glued`, (joints, 4): Forces of the springs at x.
+        `held`, (joints, 2).
         """
         solve, nothing = self._solve, np.zeros_like(held)
         if solve is None:

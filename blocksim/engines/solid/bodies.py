@@ -83,15 +83,10 @@ class Bodies:
     def rows(self, axes: Array, places: Array, sides: NDArray[np.int64], there: Place) -> Array:
         """Return what velocities at points are of scaled ones of both blocks, (points, 3, 12).
 
-        Parameters
-        ----------
-        axes : (points, 3, 3) float
-            The normal into the second block, and two ways across.
-        places : (points, 3) float
-        sides : (points, 2) int
-            Blocks, `SUPPORT` for what is fixed.
-        there : Place
-            Where the blocks are.
+        `axes`, (points, 3, 3): The normal into the second block, and two ways across.
+        `places`, (points, 3).
+        `sides`, (points, 2): Blocks, `SUPPORT` for what is fixed.
+        `there`: Where the blocks are.
         """
         arms = places[:, None] - there.centres[sides]
         about = np.cross(arms[:, :, None], axes[:, None])

@@ -59,12 +59,8 @@ FINELY, ROUGHLY = 1e-15, 1e-10
 def solve(step: Step, last: Array | None, *, paths: bool = True) -> Answer:
     """Solve a step, from what was found in the last one or from nothing.
 
-    Parameters
-    ----------
-    last : (points, 2, 3) float or None
-        Forces, and velocities over the step.
-    paths : bool, optional
-        Whether paths are followed where nothing else leads to a solution: they take long.
+    `last`, (points, 2, 3): Forces, and velocities over the step.
+    `paths`: Whether paths are followed where nothing else leads to a solution: they take long.
     """
     if not len(step.friction):
         return Answer(step.free, np.zeros((0, 3)), 0.0)
@@ -246,12 +242,8 @@ def _given_way(pushed: Array, friction: Array) -> Array:
 def dilating(step: Step, slip: Array | float = 0.0, finest: float = FINEST) -> Array | None:
     """Return forces of friction that dilates: a cone programme, and rest if there is any.
 
-    Parameters
-    ----------
-    slip : (points,) float, optional
-        By mu times this much less than what slips opens.
-    finest : float, optional
-        Gap and residuals at which the programme may end.
+    `slip`, (points,): By mu times this much less than what slips opens.
+    `finest`: Gap and residuals at which the programme may end.
     """
     points, size, mu = len(step.friction), step.bands.size, step.friction
     round_ = np.flatnonzero(mu > 0)

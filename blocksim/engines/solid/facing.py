@@ -32,11 +32,8 @@ def frames(normals: Array) -> Array:
 class Facing:
     """A face of one hull of each pair, and the face of the other that looks at it.
 
-    Parameters
-    ----------
-    pairs : (pairs, 2) int
-    faces : tuple of (pairs,) int
-        Of which of a pair, 0 or 1, the face is, and which of its faces.
+    `pairs`, (pairs, 2).
+    `faces`, tuple of (pairs,): Of which of a pair, 0 or 1, the face is, and which of its faces.
     """
 
     def __init__(self, hulls: Hulls, pairs: Places, faces: tuple[Places, Places]) -> None:
@@ -79,10 +76,8 @@ class Facing:
     def corners_of_ours(self, inside: Flags) -> tuple[Array, Flags, Array]:
         """Return points of their face over our corners, which are within it, and heights.
 
-        Parameters
-        ----------
-        inside : (pairs, k) bool
-            Their corners that are over our face: one of ours at the same place is no other.
+        `inside`, (pairs, k): Their corners that are over our face: one of ours at the same
+            place is no other.
         """
         # Turned over, so that it goes around the same way.
         within = _inside(self.flat, _reversed(self.other, self.others), self.others, self.count)

@@ -24,25 +24,15 @@ class Hulls:
     Rows are padded by repeating what they have, so that extremes over them are right.
     Lengths are in units of the assembly's size.
 
-    Parameters
-    ----------
-    owner : (hulls,) int
-        Block of each, `SUPPORT` where it is fixed.
-    support : (hulls,) int
-        Which support it is part of; -1 for the floor and for what moves.
-    corners : (hulls, v, 3) float
-        From the centre of the block; of fixed ones from the origin.
-    normals : (hulls, f, 3) float
-    offsets : (hulls, f) float
-        ``normal @ x`` on each face.
-    around : (hulls, f, k) int
-        Corners of each face, counter-clockwise seen from outside.
-    many : (hulls, f) int
-        How many of them there are; 0 for faces that are padding.
-    edges : (hulls, e, 2) int
-        Corners at the ends of each edge.
-    thickness : (hulls,) float
-        Least distance between two planes around it.
+    `owner`, (hulls,): Block of each, `SUPPORT` where it is fixed.
+    `support`, (hulls,): Which support it is part of; -1 for the floor and for what moves.
+    `corners`, (hulls, v, 3): From the centre of the block; of fixed ones from the origin.
+    `normals`, (hulls, f, 3).
+    `offsets`, (hulls, f): ``normal @ x`` on each face.
+    `around`, (hulls, f, k): Corners of each face, counter-clockwise seen from outside.
+    `many`, (hulls, f): How many of them there are; 0 for faces that are padding.
+    `edges`, (hulls, e, 2): Corners at the ends of each edge.
+    `thickness`, (hulls,): Least distance between two planes around it.
     """
 
     owner: Places
@@ -58,12 +48,8 @@ class Hulls:
     def placed(self, centres: Array, turns: Array) -> Hulls:
         """Return them where the blocks are.
 
-        Parameters
-        ----------
-        centres : (blocks + 1, 3) float
-            The last row is 0, for what is fixed.
-        turns : (blocks + 1, 3, 3) float
-            The last one is the identity.
+        `centres`, (blocks + 1, 3): The last row is 0, for what is fixed.
+        `turns`, (blocks + 1, 3, 3): The last one is the identity.
         """
         turn, centre = turns[self.owner], centres[self.owner]
         corners = np.einsum("hij,hvj->hvi", turn, self.corners) + centre[:, None]
@@ -78,10 +64,7 @@ def hulls_of(assembly: SpatialAssembly, axes: Array) -> Hulls:
     The floor is level with the lowest of them. No block touches it as it is built but
     through a joint.
 
-    Parameters
-    ----------
-    axes : (blocks, 3, 3) float
-        Columns are the axes of each block's frame.
+    `axes`, (blocks, 3, 3): Columns are the axes of each block's frame.
     """
     size = assembly.size
     made: list[Polyhedron] = []

@@ -28,18 +28,11 @@ KINDS = 4
 class Points(NamedTuple):
     """Points of contact. A point moves with `after`, its plane with `before`.
 
-    Parameters
-    ----------
-    before, after : (points,) int
-        Hulls.
-    places : (points, 3) float
-        Where they are [size].
-    normals : (points, 3) float
-        From `before` into `after`.
-    gaps : (points,) float
-        Below 0 where they overlap.
-    keys : (points,) int
-        The same for the same point from step to step.
+    `before`, `after`, (points,): Hulls.
+    `places`, (points, 3): Where they are [size].
+    `normals`, (points, 3): From `before` into `after`.
+    `gaps`, (points,): Below 0 where they overlap.
+    `keys`, (points,): The same for the same point from step to step.
     """
 
     before: Places
@@ -69,12 +62,8 @@ class _Axis(NamedTuple):
 def near(hulls: Hulls, margin: Array) -> Places:
     """Return pairs of hulls of two owners whose boxes are within a margin, (pairs, 2).
 
-    Parameters
-    ----------
-    hulls : Hulls
-        Where they are.
-    margin : (hulls,) float
-        How far each may come in a step.
+    `hulls`: Where they are.
+    `margin`, (hulls,): How far each may come in a step.
     """
     low = hulls.corners.min(axis=1) - margin[:, None]
     high = hulls.corners.max(axis=1) + margin[:, None]
@@ -96,13 +85,9 @@ def near(hulls: Hulls, margin: Array) -> Places:
 def meet(hulls: Hulls, pairs: Places, margin: Array) -> Points:
     """Find the points of contact of pairs that are within a margin.
 
-    Parameters
-    ----------
-    hulls : Hulls
-        Where they are.
-    pairs : (pairs, 2) int
-    margin : (pairs,) float
-        Gaps beyond which nothing is said.
+    `hulls`: Where they are.
+    `pairs`, (pairs, 2).
+    `margin`, (pairs,): Gaps beyond which nothing is said.
     """
     axis = _by_faces(hulls, pairs)
     close = axis.gap <= margin

@@ -31,10 +31,7 @@ STEPS, HALVINGS = 40, 12
 def followed(step: Step, rounded: float) -> Array | None:
     """Return forces at the end of a path, or where it breaks off; None where it never begins.
 
-    Parameters
-    ----------
-    rounded : float
-        Smoothing of the slip over that of the product.
+    `rounded`: Smoothing of the slip over that of the product.
     """
     mu = step.friction
     scale = np.stack([np.ones_like(mu), mu, mu], axis=1)
@@ -110,9 +107,7 @@ def _left(
 class Plus:
     """The smoothed part of points within the cone, and how it changes with them.
 
-    Parameters
-    ----------
-    z : (points, 3) float
+    `z`, (points, 3).
     """
 
     def __init__(self, z: Array, smooth: float) -> None:

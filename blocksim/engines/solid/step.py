@@ -19,18 +19,12 @@ ALIKE = np.ones((1, 3))
 class Step:
     """What a step asks.
 
-    Parameters
-    ----------
-    bands : Bands
-        Which blocks each point is between.
-    rows : (points, 3, 12) float
-        Velocities at the points, along the normal and two ways across, of scaled ones of both
-        blocks; 0 for what is fixed.
-    drift : (points, 3) float
-        Velocities without acceleration, over the step.
-    free : (6 blocks,) float
-        Accelerations without contact, scaled.
-    friction : (points,) float
+    `bands`: Which blocks each point is between.
+    `rows`, (points, 3, 12): Velocities at the points, along the normal and two ways across, of
+        scaled ones of both blocks; 0 for what is fixed.
+    `drift`, (points, 3): Velocities without acceleration, over the step.
+    `free`, (6 blocks,): Accelerations without contact, scaled.
+    `friction`, (points,).
     """
 
     bands: Bands
@@ -59,11 +53,8 @@ class Step:
     def with_springs(self, springs: Array, right: Array) -> Array | None:
         """Solve (1 + H^T S H) x = right; None where that says nothing of some unknowns.
 
-        Parameters
-        ----------
-        springs : (points, 3, 3) float
-            S, of each point; H are the rows.
-        right : (6 blocks,) float
+        `springs`, (points, 3, 3): S, of each point; H are the rows.
+        `right`, (6 blocks,).
         """
         band = self.bands.band(self.rows, ALIKE, np.matmul(springs, self.rows))
         found = self.bands.solve_band(band, right)
@@ -83,12 +74,9 @@ class Step:
 class Answer:
     """Accelerations and forces.
 
-    Parameters
-    ----------
-    x : (6 blocks,) float
-    forces : (points, 3) float
-    residual : float
-        Worst of imbalance, penetration and friction off its law, over the largest
+    `x`, (6 blocks,).
+    `forces`, (points, 3).
+    `residual`: Worst of imbalance, penetration and friction off its law, over the largest
         acceleration where that is above 1.
     """
 

@@ -91,9 +91,7 @@ class SolidBlocks:
     def hold(self, sweeps: int) -> Array:  # noqa: ARG002 - the protocol's
         """Solve the contacts as they were built, from rest; the blocks stay.
 
-        Returns
-        -------
-        (blocks, 6) float
+        Returns (blocks, 6).
         """
         found = solve(at_rest(self.bodies), None)
         self._begin(found.forces)

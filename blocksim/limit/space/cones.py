@@ -23,15 +23,10 @@ SOLVED = ("Solved", "AlmostSolved", "InsufficientProgress", "MaxIterations", "Nu
 class Answer:
     """What came of a programme.
 
-    Parameters
-    ----------
-    forces : (3 points,) float
-        Empty where there is none.
-    value : float
-        The largest value of what was sought; inf where nothing bounds it, -inf where no
+    `forces`, (3 points,): Empty where there is none.
+    `value`: The largest value of what was sought; inf where nothing bounds it, -inf where no
         forces balance at any value.
-    rates : (rows,) float
-        Prices of equilibrium: rates at which blocks move.
+    `rates`, (rows,): Prices of equilibrium: rates at which blocks move.
     """
 
     forces: Array
@@ -48,19 +43,14 @@ def most(
 ) -> Answer:
     """Find forces within friction that balance, at the largest value of one unknown.
 
-    Parameters
-    ----------
-    matrix : (rows, 3 points) sparse
-        What forces at the points do: along the normal, and two ways across.
-    pull : (rows,) float
-        What they balance.
-    friction : (points,) float
-        inf allowed.
-    live : (rows,) float, optional
-        Pulls times the unknown besides. Without, the unknown is what each point presses by
-        more than friction needs, and at most 1.
-    lift : float
-        What each normal force adds to the unknown: rates then open every point by that much.
+    `matrix`, (rows, 3 points) sparse: What forces at the points do: along the normal, and two
+        ways across.
+    `pull`, (rows,): What they balance.
+    `friction`, (points,): inf allowed.
+    `live`, (rows,): Pulls times the unknown besides. Without, the unknown is what each point
+        presses by more than friction needs, and at most 1.
+    `lift`: What each normal force adds to the unknown: rates then open every point by that
+        much.
     """
     rows, points = int(matrix.shape[0]), len(friction)
     presses = live is None

@@ -38,9 +38,7 @@ class Contacts(JointPoints):
     def slack(self, forces: Array) -> Array:
         """Return by how much each point presses more than friction needs, (points,).
 
-        Parameters
-        ----------
-        forces : (3 points,) float
+        `forces`, (3 points,).
         """
         each = forces.reshape(-1, 3)
         across = np.hypot(each[:, 1], each[:, 2])
@@ -53,9 +51,7 @@ class Contacts(JointPoints):
 
         Without a bound on friction no point may slip: what does counts below 0.
 
-        Parameters
-        ----------
-        rates : (6 blocks,) float
+        `rates`, (6 blocks,).
         """
         each: Array = (self.matrix.T @ rates).reshape(-1, 3)
         slip = np.hypot(each[:, 1], each[:, 2])
@@ -68,11 +64,8 @@ class Contacts(JointPoints):
 
         So no point closes by an error. There are none where blocks are wedged.
 
-        Parameters
-        ----------
-        pull : (6 blocks,) float
-        rates : (6 blocks,) float
-            What the solver found without.
+        `pull`, (6 blocks,).
+        `rates`, (6 blocks,): What the solver found without.
         """
         left_over = float((-self.opening(rates) * self.own).max())
         for times in LIFTS:

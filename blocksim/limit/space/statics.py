@@ -35,15 +35,8 @@ class SpatialEquilibrium:
     cone. A motion is held to the rates at which points open: no forces could balance but
     those of many times all weight.
 
-    Parameters
-    ----------
-    found : Answer
-        What the programme found.
-
-    Attributes
-    ----------
-    margin : float
-        By how much every point presses, in units of the lighter block's weight beside it
+    `found`: What the programme found.
+    `margin`: By how much every point presses, in units of the lighter block's weight beside it
         over the points of its joint; below 0 it would have to pull. At most 1, -inf where not
         even pulling would help.
     """
@@ -120,13 +113,9 @@ class SpatialEquilibrium:
 class SpatialCollapse:
     """The largest factor on live loads at which forces of equilibrium exist.
 
-    Parameters
-    ----------
-    load_factor : float or None
-        inf where no load is too much, None where there is no equilibrium at any.
-    gap : float
-        By how much, of the factor, forces and mechanism disagree.
-    mechanism : (blocks, 6) float or None
+    `load_factor`: inf where no load is too much, None where there is no equilibrium at any.
+    `gap`: By how much, of the factor, forces and mechanism disagree.
+    `mechanism`, (blocks, 6).
     """
 
     load_factor: float | None
@@ -218,11 +207,8 @@ def observed_joints(
     Of a hinge some points stay together and others part, or all but one edge does. Sliding
     opens by mu times the slip, as limit analysis has it: such points count as together.
 
-    Parameters
-    ----------
-    problem : Problem[SpatialAssembly]
-    rates : (blocks, 6) float
-        The largest way of a corner 1.
+    `problem`.
+    `rates`, (blocks, 6): The largest way of a corner 1.
     """
     contacts = Contacts(problem)
     each = (contacts.matrix.T @ rates.ravel()).reshape(-1, 3)
