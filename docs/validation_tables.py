@@ -13,7 +13,7 @@ from blocksim.arch import theory
 from blocksim.arch.limit import least_thickness
 from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.studies.questions import StructureRow
-from blocksim.studies.structures import structures, validate_structures
+from blocksim.studies.validate import structures, validate
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -112,9 +112,7 @@ def _eta(value: float | None) -> str:
 def _structures() -> str:
     """Set what is known of each shipped structure beside what limit analysis says."""
     known = structures(quick=False)
-    asked = {
-        (row.structure, row.question): row for row in validate_structures(known, [], workers=1)
-    }
+    asked = {(row.structure, row.question): row for row in validate(known, [], workers=1)}
     rows = list[list[str]]()
     for each in known:
         for one in each.expect:

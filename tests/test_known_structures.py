@@ -28,11 +28,7 @@ from blocksim.kinds.scenarios import shipped
 from blocksim.report.page import report_page
 from blocksim.report.tables import write_results
 from blocksim.studies.questions import StructureRow, answer
-from blocksim.studies.structures import (
-    structures,
-    unasked_structures,
-    validate_structures,
-)
+from blocksim.studies.validate import structures, unasked, validate
 
 CASES = {
     "gable": "gable_least_friction",
@@ -160,7 +156,7 @@ QUICK = ("oppenheim_7", "box2d_tilted_stack", "gable", "catenary")
 
 @pytest.fixture(scope="module")
 def rows() -> list[StructureRow]:
-    return validate_structures([load_known(name) for name in QUICK], workers=1)
+    return validate([load_known(name) for name in QUICK], workers=1)
 
 
 def test_answers_agree_with_their_sources(rows: list[StructureRow]) -> None:
@@ -184,12 +180,12 @@ def test_answers_agree_with_their_sources(rows: list[StructureRow]) -> None:
 def test_structures_in_space_agree_with_their_sources() -> None:
     """By limit analysis and `direct`, each with its row on the page."""
     chosen = [load_known(name) for name in ("tower_113", "skew_arch_crown")]
-    found = validate_structures(chosen, workers=1)
+    found = validate(chosen, workers=1)
     assert [(row.structure, row.method, row.miss) for row in found] == [
         (known.name, method, "") for known in chosen for method in ("limit", "direct")
     ]
-    unasked = {each.engine: each.scenarios for each in unasked_structures(chosen)}
-    assert unasked == {"pymunk": ("tower_113", "skew_arch_crown")}
+    left_out = {each.engine: each.scenarios for each in unasked(chosen)}
+    assert left_out == {"pymunk": ("tower_113", "skew_arch_crown")}
     words = " ".join(
         " ".join(Page(report_page([ROW], MAP, {"blocksim": "0.1"}, (), found)).words).split()
     )
@@ -222,13 +218,13 @@ def test_what_is_wrong_is_a_miss(
 
 def test_what_is_not_asked_is_said() -> None:
     chosen = [load_known(name) for name in ("catenary", "spread_90_12_20", "gable")]
-    told = [each.words for each in unasked_structures(chosen)]
+    told = [each.words for each in unasked(chosen)]
     assert told == [
         "pymunk: catenary (more than 40 blocks)",
         "pymunk: spread_90_12_20 (it moves no supports)",
     ]
     with pytest.raises(InputError, match="one of direct"):
-        validate_structures(chosen, ("limit",))
+        validate(chosen, ("limit",))
 
 
 @pytest.fixture(scope="module")
@@ -289,7 +285,7 @@ def test_pictures_are_of_the_mechanism(page: str, rows: list[StructureRow]) -> N
 
 
 def test_rows_are_written(tmp_path: Path, rows: list[StructureRow]) -> None:
-    write_results([ROW], tmp_path, (), rows, unasked_structures([load_known("catenary")]))
+    write_results([ROW], tmp_path, (), rows, unasked([load_known("catenary")]))
     document = json.loads((tmp_path / "validate.json").read_text(), parse_constant=pytest.fail)
     part = document["structures"]
     assert [row["structure"] for row in part["rows"][::3]] == list(QUICK)
@@ -318,9 +314,8 @@ def test_the_exit_code_counts_both_parts(
 ) -> None:
     at = "blocksim.cli.studies."
     monkeypatch.setattr("blocksim.report.tables.write_results", lambda *_: [])
-    monkeypatch.setattr(f"{at}run_validation", lambda *_, **__: [replace(ROW, miss=arch)])
-    told = [replace(rows[0], miss=structure), *rows[1:]]
-    monkeypatch.setattr(f"{at}validate_structures", lambda *_, **__: told)
+    told = [replace(ROW, miss=arch), replace(rows[0], miss=structure), *rows[1:]]
+    monkeypatch.setattr(f"{at}run_validation", lambda *_, **__: told)
     done = blocksim("validate", "--quick", "--out", str(tmp_path))
     assert done.returncode == code
     agree = "10 of 11" if structure else "All 11"

@@ -14,7 +14,6 @@ from blocksim.arch.theory.map import (
     at_points,
     divide_friction,
     iso_half_angle,
-    region,
     special_angles,
 )
 
@@ -63,7 +62,7 @@ def test_the_rotational_mode_ends_in_r(weight: str) -> None:
     ],
 )
 def test_regions_of_fig_9(eta: float, mu: float, mode: str) -> None:
-    assert region(eta, mu) == (Mode(mode),)
+    assert at_points(eta, mu).regions.item() == (Mode(mode),)
 
 
 @pytest.mark.parametrize("weight", WEIGHTS)

@@ -14,7 +14,7 @@ from windows import Windows, hold_clock, tick, wait_until
 from blocksim import Mode
 from blocksim.kinds.loading import load_known
 from blocksim.report.tables import write_results
-from blocksim.studies.structures import validate_structures
+from blocksim.studies.validate import validate
 from blocksim.view.style import MODES
 
 playwright = pytest.importorskip("playwright.sync_api")
@@ -35,7 +35,7 @@ LONG = replace(
 def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = tmp_path_factory.mktemp("report")
     known = [load_known("oppenheim_7"), load_known("box2d_tilted_stack")]
-    built = validate_structures(known, ("direct",), workers=1)
+    built = validate(known, ("direct",), workers=1)
     write_results([*rows(), LONG, replace(LONG, engine="pybullet")], folder, (), built)
     return (folder / "report.html").as_uri()
 

@@ -23,7 +23,7 @@ from typing import Any, Literal
 from blocksim.ask.check import check
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import BlocksimError, InputError, in_line
-from blocksim.common.processes import Crew, processes
+from blocksim.common.processes import Hands
 from blocksim.kinds.changes import with_friction
 from blocksim.kinds.files import load_structure, structure_of, written
 from blocksim.kinds.offers import offers_of
@@ -140,7 +140,7 @@ def check_batches(
                 yield from _one_by_one(batch, friction)
     finally:
         coming.end()
-        pool.end()
+        pool.hands.leave()
 
 
 class _Coming:
@@ -182,11 +182,10 @@ class _Coming:
 
 
 class _Pool:
-    """Processes that are started once more than a few structures came, and anew if one dies."""
+    """Processes that are started once more than a few structures came."""
 
     def __init__(self, count: int) -> None:
-        self._count, self._seen = count, 0
-        self._crew: Crew | None = None
+        self._count, self._seen, self.hands = count, 0, Hands(count)
 
     def submit(
         self, batch: tuple[Structure, ...], friction: float | None
@@ -197,32 +196,25 @@ class _Pool:
             done = Future[list[Told]]()
             done.set_result(_answered(batch, friction))
             return done
-        if self._crew is None:
-            self._crew = processes(self._count)
         try:
-            return self._crew.submit(_answered, batch, friction)
+            return self.hands.submit(_answered, batch, friction)
         except BrokenExecutor:
-            self._crew = processes(self._count)
-            return self._crew.submit(_answered, batch, friction)
-
-    def end(self) -> None:
-        """End all work."""
-        if self._crew is not None:
-            self._crew.end()
+            self.hands.renew()
+            return self.hands.submit(_answered, batch, friction)
 
 
 def _one_by_one(batch: tuple[Structure, ...], friction: float | None) -> Iterator[Told]:
     """Answer structures in a process of their own, which may die of one."""
-    own = processes(1)
+    own = Hands(1)
     try:
         for each in batch:
             try:
                 yield own.submit(_told, each, friction).result()
             except BrokenExecutor:
                 yield Told(error="the process that answered it died: is there enough memory?")
-                own = processes(1)
+                own.renew()
     finally:
-        own.end()
+        own.leave()
 
 
 def _answered(batch: tuple[Structure, ...], friction: float | None) -> list[Told]:

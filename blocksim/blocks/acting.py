@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array, frozen
 from blocksim.common.checks import COORDINATE, FACTOR, FORCE, require_all
+
+if TYPE_CHECKING:
+    from blocksim.blocks.problem import Problem
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -62,3 +67,12 @@ class Move:
         FACTOR.require("turn", self.turn)
         require_all(FACTOR, "direction", self.direction)
         require_all(COORDINATE, "about", self.about)
+
+
+def tilt_and_lean(problem: Problem[Any]) -> tuple[float, float]:
+    """Return by how much a table tilts, and gravity is turned out of the plane [deg]."""
+    x, y, z = problem.gravity.tolist()
+    if problem.in_space:
+        return math.degrees(math.atan2(math.hypot(x, y), 0.0 - z)), 0.0
+    # Where nothing pulls in the plane, 0.0 - y is no -0.0: it is not upside down.
+    return math.degrees(math.atan2(x, 0.0 - y)), math.degrees(math.atan2(z, math.hypot(x, y)))

@@ -12,6 +12,7 @@ from blocksim.ask.check import check
 from blocksim.ask.methods import choose
 from blocksim.ask.rest import let_go, rest_words
 from blocksim.ask.simulate import simulate
+from blocksim.blocks.acting import tilt_and_lean
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.cli.acting import Loading
 from blocksim.cli.arguments import Option
@@ -26,7 +27,6 @@ from blocksim.common.words import counted
 from blocksim.engines import NAMES
 from blocksim.kinds.loading import load_recording
 from blocksim.report.poses import write_recording_csv, write_recording_json
-from blocksim.report.problems import tilt_and_lean
 from blocksim.simulation.motion import MOVED
 from blocksim.simulation.observation import conclude, hold
 from blocksim.simulation.recording import Recording
@@ -208,5 +208,5 @@ def picture_of_leaning(out: Path, kind: str, problem: Problem, height: int | Non
     tall = height or HEIGHT
     made = Film([run], verdict=seen.verdict, enlarge=enlarge, view="3d", height=tall)
     write_whole(out, lambda file: made.still(file, kind))
-    lean = tilt_and_lean(problem)["lean_deg"]
+    _, lean = tilt_and_lean(problem)
     say(f"wrote {out}: {seen.verdict}, gravity leans {lean:.4g} deg out of the plane")

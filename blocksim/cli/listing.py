@@ -13,7 +13,7 @@ from blocksim.common.errors import InputError, perhaps
 from blocksim.common.fields import fields_of
 from blocksim.kinds import KINDS
 from blocksim.kinds.scenarios import load_scenario, shipped
-from blocksim.studies.structures import structures
+from blocksim.studies.validate import structures
 
 NUMBERS = {"alpha", "mu", "n", "eta", "blocks"}
 """Columns of numbers."""

@@ -20,12 +20,7 @@ from blocksim.report.structurewords import found_of, question_of, summary_of_str
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
 from blocksim.studies.chart import Point, cases, measure, on_front
 from blocksim.studies.questions import StructureRow
-from blocksim.studies.structures import (
-    structures,
-    unasked_structures,
-    validate_structures,
-)
-from blocksim.studies.validate import scenarios, unasked
+from blocksim.studies.validate import scenarios, structures, unasked
 from blocksim.studies.validate import validate as run_validation
 
 Results = Annotated[Path, Option(about="Folder for the results.", folder=True)]
@@ -60,17 +55,18 @@ def validate(
     chosen = scenarios(quick=quick)
     left_out = unasked(chosen, engines)
     built = structures(quick=quick)
-    built_left_out = unasked_structures(built, engines)
+    built_left_out = unasked(built, engines)
     with progress() as report:
-        rows = run_validation(chosen, engines, workers=workers, progress=report)
-        answers = validate_structures(built, engines, workers=workers, progress=report)
+        found = run_validation([*chosen, *built], engines, workers=workers, progress=report)
+    rows = [row for row in found if isinstance(row, Validation)]
+    answers = [row for row in found if isinstance(row, StructureRow)]
     paths = write_results(rows, out, left_out, answers, built_left_out)
     show(validation_table(rows))
     say(*validation_lines(rows, left_out))
     show(structure_table(answers))
     say(*structure_lines(answers, built_left_out))
     say("wrote " + ", ".join(str(path) for path in paths))
-    raise click.exceptions.Exit(int(any(row.miss for row in (*rows, *answers))))
+    raise click.exceptions.Exit(int(any(row.miss for row in found)))
 
 
 def chart(

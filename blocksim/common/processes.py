@@ -20,7 +20,7 @@ Found = TypeVar("Found")
 
 
 class Crew(ProcessPoolExecutor):
-    """An executor of processes that can be ended at once; see `processes`."""
+    """An executor of that many processes, started as they are needed, that can end at once."""
 
     def __init__(self, count: int) -> None:
         self._others = set(active_children())
@@ -46,15 +46,44 @@ class Crew(ProcessPoolExecutor):
         self.shutdown(cancel_futures=True)
 
 
-def processes(count: int) -> Crew:
-    """Return an executor of that many processes, started as they are needed."""
-    return Crew(count)
+class Hands:
+    """The executor given, or processes: started at the first work, and anew if one dies."""
+
+    def __init__(self, workers: int, given: Executor | None = None) -> None:
+        self._workers, self._given = workers, given
+        self._executor = given
+
+    def submit(
+        self, fn: Callable[Asked, Found], /, *args: Asked.args, **kwargs: Asked.kwargs
+    ) -> Future[Found]:
+        """Hand out work."""
+        if self._executor is None:
+            self._executor = Crew(self._workers)
+        return self._executor.submit(fn, *args, **kwargs)
+
+    def renew(self) -> bool:
+        """Replace broken processes; an executor given is not ours to replace."""
+        if self._given is not None:
+            return False
+        if self._executor is not None:
+            self._executor.shutdown(wait=False, cancel_futures=True)
+        self._executor = None
+        return True
+
+    def leave(self, *, wait: bool = False) -> None:
+        """Let go of processes, after their work or at once."""
+        if not isinstance(self._executor, Crew) or self._executor is self._given:
+            return
+        if wait:
+            self._executor.shutdown()
+        else:
+            self._executor.end()
 
 
 @contextmanager
 def crew(count: int) -> Generator[Executor]:
     """Lend processes; where the block is left by an exception their work ends at once."""
-    executor = processes(count)
+    executor = Crew(count)
     try:
         yield executor
     except BaseException:

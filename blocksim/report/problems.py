@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import At, Line, dimensions_of, friction_angle
+from blocksim.blocks.acting import tilt_and_lean
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.road import fill_of
 from blocksim.blocks.shaking import shaking_record
@@ -42,15 +43,15 @@ def problem_record(problem: Problem[Any], over: str | None = None) -> ProblemRec
     arch = None if spatial else weighed_arch(problem)
     fill = None if spatial else fill_of(problem)
     spread = None if spatial else problem.dispersal
-    shaking = problem.shaking
+    shaking, (tilt, lean) = problem.shaking, tilt_and_lean(problem)
     said: dict[str, object] = {
         "title": problem.title,
         "blocks": len(problem.assembly.blocks),
         "joints": len(problem.assembly.joints),
         "mu": problem.mu,
         "friction_angle_deg": friction_angle(problem.mu),
-        "lean_deg": None,
-        **tilt_and_lean(problem),
+        "tilt_deg": tilt,
+        "lean_deg": None if spatial else lean,
         "azimuth_deg": math.degrees(problem.azimuth) if spatial else None,
         "gravity_m_s2": (problem.gravity * STANDARD_GRAVITY).tolist(),
         "load": problem.load,
@@ -174,32 +175,19 @@ def _live(problem: Problem[Any]) -> float:
     return float(sum(load.force[-1] * len(load.blocks) for load in loads))
 
 
-def tilt_and_lean(problem: Problem[Any]) -> dict[str, float]:
-    """Return by how many degrees a table tilts, and gravity is turned out of the plane."""
-    x, y, z = problem.gravity.tolist()
-    if problem.in_space:
-        tilt = math.degrees(math.atan2(math.hypot(x, y), -z))
-        return {"tilt_deg": tilt}
-    return {
-        "tilt_deg": math.degrees(math.atan2(x, -y)),
-        "lean_deg": math.degrees(math.atan2(z, math.hypot(x, y))),
-    }
-
-
 def described(problem: Problem[Any]) -> str:
     """Say what a problem is, in a line."""
-    turned = tilt_and_lean(problem)
-    assembly = problem.assembly
+    (tilt, lean), assembly = tilt_and_lean(problem), problem.assembly
     said = [problem.title] if problem.title else []
     said += [counted(len(assembly.blocks), "block"), counted(len(assembly.joints), "joint")]
     spatial = problem.in_space
     said.append(f"in space, mu {problem.mu:g}" if spatial else f"mu {problem.mu:g}")
-    if turned["tilt_deg"]:
-        said.append(f"tilted {turned['tilt_deg']:g} deg")
+    if tilt:
+        said.append(f"tilted {tilt:g} deg")
     if spatial and problem.azimuth:
         said.append(f"towards {math.degrees(problem.azimuth):g} deg from x")
-    if turned.get("lean_deg"):
-        said.append(f"gravity leans {turned['lean_deg']:g} deg out of the plane")
+    if lean:
+        said.append(f"gravity leans {lean:g} deg out of the plane")
     pull = math.hypot(*problem.gravity.tolist())
     if abs(pull - 1) > ROUNDING:
         said.append(f"gravity {pull * STANDARD_GRAVITY:g} m/s2")

@@ -10,6 +10,7 @@ import numpy as np
 
 from blocksim.arch.answers import ArchAnswer
 from blocksim.ask.check import Check
+from blocksim.blocks.acting import tilt_and_lean
 from blocksim.blocks.joints import joint_names
 from blocksim.blocks.maker import Kind
 from blocksim.blocks.problem import Problem
@@ -17,7 +18,7 @@ from blocksim.blocks.road import fill_of
 from blocksim.common.fields import fields_of
 from blocksim.limit import in_world, reactions
 from blocksim.limit.carried import Carried
-from blocksim.report.problems import tilt_and_lean, weighed_arch
+from blocksim.report.problems import weighed_arch
 from blocksim.view.arrows import forces_of
 from blocksim.view.dimensions import Angle, dimensions_of
 from blocksim.view.sheet import LARGEST, Sheet
@@ -162,14 +163,14 @@ def load_words(problem: Problem[Any]) -> list[str]:
         )
         count = len(problem.live)
         words.append(f"{count} live load{'s' * (count > 1)}, {factor}.")
-    turned = tilt_and_lean(problem)
-    if abs(turned["tilt_deg"]) > 1e-9:
+    tilt, lean = tilt_and_lean(problem)
+    if abs(tilt) > 1e-9:
         where = "in the plane"
         if problem.in_space:
             where = f"towards {math.degrees(problem.azimuth):.4g}° from x"
-        words.append(f"Gravity is tilted by {turned['tilt_deg']:.4g}° {where}.")
-    if turned.get("lean_deg"):
-        words.append(f"Gravity leans {turned['lean_deg']:.4g}° out of the plane.")
+        words.append(f"Gravity is tilted by {tilt:.4g}° {where}.")
+    if lean:
+        words.append(f"Gravity leans {lean:.4g}° out of the plane.")
     if problem.shaking is not None:
         words.append(f"The ground shakes: {problem.shaking.words}.")
     return words

@@ -20,7 +20,7 @@ from blocksim.report.inlinemap import PAGE
 from blocksim.report.page import report_page
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
 from blocksim.studies.questions import NEAR, SLOWLY, StructureRow
-from blocksim.studies.validate import ASIDE, ERROR_BOUND, installed
+from blocksim.studies.validate import ASIDE, ERROR_BOUND
 from blocksim.view.drawing import save_figure
 from blocksim.view.mapfigure import MapPoint, map_figure
 
@@ -49,12 +49,14 @@ def structure_record(row: StructureRow) -> dict[str, object]:
 
 def machine() -> dict[str, str]:
     """Tell what the figures were measured on."""
+    engines = [ENGINES[name] for name in NAMES if "arches" in ENGINES[name].validates]
+    installed = [engine.name for engine in engines if engine.missing is None]
     return {
         "processor": processor(),
         "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
         "blocksim": blocksim.__version__,
-        **{name: version(name) for name in ("numpy", "scipy", *installed())},
+        **{name: version(name) for name in ("numpy", "scipy", *installed)},
     }
 
 

@@ -1,10 +1,15 @@
-"""The first part of `validate`: arches by simulation against limit analysis and theory."""
+"""What comes with blocksim and has a known answer, held against it: arches and structures.
+
+Arches are asked by simulation, against limit analysis and theory; structures by limit analysis
+and by engines, against their sources.
+"""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from blocksim.arch import limit
 from blocksim.arch.answers import ArchBracket
@@ -12,19 +17,67 @@ from blocksim.arch.circular import ETA_MAX
 from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode, observed_mode
 from blocksim.ask.bracket import bracket
+from blocksim.ask.methods import choose
+from blocksim.blocks.entries import ExpectEntry
+from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import ENGINES, NAMES, engine_named, get_engine
 from blocksim.kinds.circular import CircularArch
+from blocksim.kinds.files import shipped_structures
+from blocksim.kinds.loading import Known, load_known
 from blocksim.kinds.scenario import Scenario
 from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.simulation.observation import observe
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import Unasked, Validation, agree, answered
+from blocksim.studies.questions import StructureRow, answer
 
+Case = Scenario | Known
+Row = Validation | StructureRow
 ERROR_BOUND = 0.002
 """A bracket whose centre is farther than this from `limit` is a miss."""
 ASIDE = 0.01
 """How far below and above the bracket arches are let go."""
+LIMIT = "limit"
+
+
+class Question(NamedTuple):
+    """One question about a case, put to one method; of an arch it is what its scenario says."""
+
+    case: Case
+    expected: ExpectEntry | None
+    method: str
+
+    def answer(self) -> Row:
+        """Ask it, and compare."""
+        if isinstance(self.case, Known):
+            assert self.expected is not None  # noqa: S101 - what a structure is asked
+            return answer(self.case, self.expected, self.method)
+        return validate_one(self.case, self.method)
+
+    @property
+    def refused(self) -> str:
+        """Why the method is not asked; nothing where it is."""
+        case, engine = self.case, None if self.method == LIMIT else engine_named(self.method)
+        if engine and engine.missing:
+            return f"not here: {engine.missing}"
+        if isinstance(case, Scenario):
+            if not case.lean or engine is None or engine.is_spatial:
+                return ""
+            able = " or ".join(each for each in NAMES if ENGINES[each].is_spatial)
+            return f"gravity leans out of the plane: {able} sees that"
+        if engine is None and case.problem.shaking is None:
+            return ""
+        spreads = self.expected is not None and self.expected.over == "spread"
+        if engine and spreads and not engine.moves_supports:
+            return "it moves no supports"
+        if engine and len(case.problem.assembly.blocks) > engine.most_blocks:
+            return f"more than {engine.most_blocks} blocks"
+        try:
+            choose(self.method, problem=case.problem)
+        except InputError as error:
+            return error.allowed
+        return ""
 
 
 def scenarios(*, quick: bool) -> list[Scenario]:
@@ -33,61 +86,69 @@ def scenarios(*, quick: bool) -> list[Scenario]:
     return [scenario for scenario in every if scenario.quick or not quick]
 
 
-def usual(part: str) -> tuple[str, ...]:
-    """Return the engines that are asked in a part of `validate` where none is named."""
+def structures(*, quick: bool) -> list[Known]:
+    """Return the shipped structures, or those marked quick."""
+    every = [load_known(name) for name in shipped_structures()]
+    return [known for known in every if known.quick or not quick]
+
+
+def usual(case: Case) -> tuple[str, ...]:
+    """Return the engines that are asked about a case where none is named."""
+    part = "structures" if isinstance(case, Known) else "arches"
     return tuple(name for name in NAMES if part in ENGINES[name].validates)
 
 
-def installed() -> tuple[str, ...]:
-    """Return the usual engines for arches that can run here."""
-    return tuple(name for name in usual("arches") if ENGINES[name].missing is None)
+def _questions(case: Case, engines: Iterable[str] | None) -> Iterator[Question]:
+    """Go through all that is asked of a case, whether a method is asked it or not."""
+    names = usual(case) if engines is None else tuple(dict.fromkeys(engines))
+    if isinstance(case, Scenario):
+        yield from (Question(case, None, name) for name in names)
+        return
+    for expected in case.expect:
+        yield from (Question(case, expected, name) for name in (LIMIT, *names))
 
 
-def unasked(chosen: Sequence[Scenario], engines: Iterable[str] | None = None) -> list[Unasked]:
+def unasked(chosen: Sequence[Case], engines: Iterable[str] | None = None) -> list[Unasked]:
     """Tell what `validate` does not ask, and why; arguments as there."""
-    found: list[Unasked] = []
-    for name in usual("arches") if engines is None else engines:
-        remedy = engine_named(name).missing
-        leaning = tuple(each.name for each in chosen if each.lean)
-        if engines is None and remedy:
-            every = tuple(each.name for each in chosen)
-            found.append(Unasked(engine=name, scenarios=every, why=f"not here: {remedy}"))
-        elif leaning and not engine_named(name).is_spatial:
-            able = " or ".join(each for each in NAMES if ENGINES[each].is_spatial)
-            why = f"gravity leans out of the plane: {able} sees that"
-            found.append(Unasked(engine=name, scenarios=leaning, why=why))
-    return found
+    found: dict[str, dict[str, dict[str, None]]] = {}
+    names = None if engines is None else tuple(engines)
+    for case in chosen:
+        for each in _questions(case, names):
+            reasons = found.setdefault(each.method, {})
+            if why := each.refused:
+                reasons.setdefault(why, {})[case.name] = None
+    return [
+        Unasked(engine=method, scenarios=tuple(cases), why=why)
+        for method, reasons in found.items()
+        if method != LIMIT
+        for why, cases in reasons.items()
+    ]
 
 
 def validate(
-    chosen: Sequence[Scenario],
+    chosen: Sequence[Case],
     engines: Iterable[str] | None = None,
     *,
     workers: int = 2,
     progress: Progress = silent,
-) -> list[Validation]:
-    """Bracket every scenario with every engine and compare.
+) -> list[Row]:
+    """Put every question to every engine that can answer it, and compare.
 
-    `engines`: By default all that are `installed`. Scenarios whose gravity leans out of the
-        plane are for those that see that; `unasked` tells what is left out.
+    `engines`: By default those usual for arches or structures, as far as they are installed.
+        `unasked` tells what is left out.
     `workers`: Processes; 1 runs in this one.
-    Returns: In the order of scenarios, then engines, whatever finishes first.
+    Returns: In the order of cases, what is known of each, then methods, whatever finishes
+        first.
+    Raises `InputError`: If there is no such engine.
+    Raises `MissingPart`: If the library of one that is named is not installed.
     """
-    names = installed() if engines is None else tuple(dict.fromkeys(engines))
-    for name in names:
+    names = None if engines is None else tuple(engines)
+    for name in names or ():
         engine_named(name, "methods")
         get_engine(name)
-    jobs = [
-        (scenario.name, (scenario, engine))
-        for scenario in chosen
-        for engine in names
-        if engine_named(engine).is_spatial or not scenario.lean
-    ]
-    return answered(_asked_of, jobs, workers, progress)
-
-
-def _asked_of(job: tuple[Scenario, str]) -> Validation:
-    return validate_one(*job)
+    asked = [each for case in chosen for each in _questions(case, names)]
+    jobs = [(each.case.name, each) for each in asked if not each.refused]
+    return answered(Question.answer, jobs, workers, progress)
 
 
 def validate_one(scenario: Scenario, engine: str, tol: float | None = None) -> Validation:

@@ -21,7 +21,7 @@ from blocksim.ask.methods import STATIC
 from blocksim.common.checks import require
 from blocksim.common.errors import MissingPart
 from blocksim.common.files import AnyPath, make_folder
-from blocksim.common.processes import Crew, processes
+from blocksim.common.processes import Hands
 from blocksim.common.progress import Progress, silent
 from blocksim.sweeps.answers import (
     Answered,
@@ -131,7 +131,8 @@ def sweep(
     make_folder(folder := Path(folder))
     with locked(folder):
         todo.done = identities(folder)
-        tally = _answered(todo, folder, _Hands(executor, workers, in_flight), progress)
+        hands = Hands(workers, executor)
+        tally = _answered(todo, folder, hands, in_flight or 2 * workers, progress)
     return Summary(
         cases=todo.found + tally.rows,
         found=todo.found,
@@ -140,7 +141,7 @@ def sweep(
     )
 
 
-def _answered(todo: _Todo, folder: Path, hands: _Hands, progress: Progress) -> Tally:
+def _answered(todo: _Todo, folder: Path, hands: Hands, many: int, progress: Progress) -> Tally:
     """Answer all cases and write their rows; processes end, however that ends."""
     tally, started = Tally(), time.perf_counter()
     progress(0.0, "")
@@ -154,7 +155,7 @@ def _answered(todo: _Todo, folder: Path, hands: _Hands, progress: Progress) -> T
         progress((todo.found + tally.rows) / todo.size, said)
 
     try:
-        _work(todo, hands, keep)
+        _work(todo, hands, many, keep)
     except BaseException:
         hands.leave()
         raise
@@ -217,40 +218,8 @@ class _Todo:
         return STATIC_SECONDS if case.method in STATIC else LONGEST
 
 
-class _Hands:
-    """The executor given, or processes that are replaced when one of them dies.
-
-    `many`: Chunks that they are given at once.
-    """
-
-    def __init__(self, given: Executor | None, workers: int, in_flight: int | None) -> None:
-        self.many = in_flight or 2 * workers
-        self._given = given
-        self._workers = workers
-        self._executor = given or processes(workers)
-
-    def submit(self, chunk: Chunk, versions: dict[str, str]) -> Future[Answered]:
-        """Hand a chunk out."""
-        return self._executor.submit(answer, chunk, versions)
-
-    def renew(self) -> bool:
-        """Replace broken processes; an executor given is not ours to replace."""
-        if self._given is not None:
-            return False
-        self._executor.shutdown(wait=False, cancel_futures=True)
-        self._executor = processes(self._workers)
-        return True
-
-    def leave(self, *, wait: bool = False) -> None:
-        """Let go of processes, after their work or at once."""
-        if self._given is None and wait:
-            self._executor.shutdown()
-        elif isinstance(self._executor, Crew):
-            self._executor.end()
-
-
-def _work(todo: _Todo, hands: _Hands, keep: Callable[[Answered], None]) -> None:
-    """Hand out chunks and keep what comes back, until there are no more.
+def _work(todo: _Todo, hands: Hands, many: int, keep: Callable[[Answered], None]) -> None:
+    """Hand out so many chunks at once and keep what comes back, until there are no more.
 
     A chunk that fails is halved until the case at fault is alone, which becomes a row.
     Where a process dies, any chunk in flight may be the cause: they go again, one by one.
@@ -269,13 +238,13 @@ def _work(todo: _Todo, hands: _Hands, keep: Callable[[Answered], None]) -> None:
     while True:
         alone = bool(suspects)
         try:
-            while len(pending) < (1 if alone else hands.many):
+            while len(pending) < (1 if alone else many):
                 queue = suspects if alone else again
                 chunk = queue.popleft() if queue else [] if alone else todo.chunk()
                 if not chunk:
                     break
                 try:
-                    pending[hands.submit(chunk, todo.versions)] = chunk
+                    pending[hands.submit(answer, chunk, todo.versions)] = chunk
                 except BrokenExecutor:
                     queue.appendleft(chunk)
                     raise

@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from blocksim.blocks.acting import tilt_and_lean
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.outlines import signed_area
@@ -86,19 +87,12 @@ def friction_words(mu: float) -> str:
 
 def loading_words(problem: Problem[Any]) -> list[str]:
     """Say what besides its weight acts: tilt, lean, the load factor, ground that shakes."""
-    x, y, z = problem.gravity.tolist()
-    # In space it pulls down along the last axis.
-    if problem.in_space:
-        x, y, z = math.hypot(x, y), z, 0.0
-    words: list[str] = []
-    if not (x or y or z):
-        words.append("no gravity")
-    tilt = math.degrees(math.atan2(x, -y)) if x or y else 0.0
+    tilt, lean = tilt_and_lean(problem)
+    words = [] if problem.gravity.any() else ["no gravity"]
     if abs(tilt) > 1e-9:
         side = "" if tilt > 0 else " to the left"
         words.append(f"tilted {abs(tilt):.4g}°{side}")
-    if z:
-        lean = math.degrees(math.atan2(z, math.hypot(x, y)))
+    if lean:
         words.append(f"gravity leans {lean:.3g}° out of the plane")
     if problem.live and problem.load:
         words.append(f"load factor {problem.load:.4g}")

@@ -100,11 +100,6 @@ def at_points(eta: ArrayLike, mu: ArrayLike, weight: Weight = "centreline") -> M
     return MapPoints(half_angle=low.reshape(shape_asked), modes=modes.reshape(shape_asked))
 
 
-def region(eta: float, mu: float, weight: Weight = "centreline") -> tuple[Mode, ...]:
-    """Region of one point of the map; several modes on a line between regions."""
-    return names_of(int(at_points(eta, mu, weight).modes))
-
-
 def divide_friction(half_angle: float) -> float:
     """Friction at and below which no thickness stands: both joints slide, (8) and (9)."""
     require(0.01 <= half_angle <= 3.0, "half_angle", half_angle, "from 0.01 to 3")
