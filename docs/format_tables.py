@@ -53,17 +53,17 @@ def _keys(part: dict[str, Any]) -> str:
 
 
 def _described(part: dict[str, Any]) -> dict[str, str]:
-    """Return what a docstring in numpy style says of each parameter, bases included."""
+    """Return what a docstring says of each key, bases included: `key`, `other`: What it is."""
     text = part.get("description", "")
     base = {"StructureFile": Around, "DesignFile": How}.get(part.get("title", ""))
     if base is not None:
         text += "\n" + re.sub(r"^ {4}", "", base.__doc__ or "", flags=re.MULTILINE)
     said = dict[str, str]()
-    for found in re.finditer(
-        r"^(\w[\w, ]*) : [^\n]*\n((?:    [^\n]*\n?)*)", text, flags=re.MULTILINE
+    for names, first, rest in re.findall(
+        r"^((?:`\w+`(?:, )?)+): ([^\n]*\n?)((?:    [^\n]*\n?)*)", text, flags=re.MULTILINE
     ):
-        for name in found[1].split(", "):
-            said[name] = " ".join(found[2].split())
+        for name in re.findall(r"\w+", names):
+            said[name] = " ".join(f"{first} {rest}".split())
     return said
 
 
