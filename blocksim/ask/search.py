@@ -44,6 +44,8 @@ class Bisection:
     `judge`: Value to answer.
     `floor`, `ceiling`: Values beyond which the search is given up.
     `name`: What the value is.
+
+    It has:
     `low`, `high`: Largest ratio that collapsed, smallest that stood.
     `runs`, `undecided`: Ratios tried, and those without an answer.
     """

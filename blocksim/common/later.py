@@ -24,6 +24,8 @@ class Later(Mapping[str, Thing]):
 
     `beyond`: Further things, asked only for names that `makers` has not, and where all are
         listed.
+
+    It has:
     `shipped`: Names of `makers` that are known from the start.
     """
 

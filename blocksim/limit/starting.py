@@ -65,11 +65,10 @@ class Start:
     power: float = 0.0
 
 
-def may_start(problem: Problem, *, seconds: float = SECONDS) -> Start:
+def may_start(problem: Problem) -> Start:
     """Tell whether blocks at rest may start to move, by Coulomb's law.
 
     `problem`: In its plane, with bounded friction.
-    `seconds`: Time after which it gives up.
     Raises `InputError`: If friction is unbounded: what the law says is a limit then, and no
         choice.
     """
@@ -80,7 +79,7 @@ def may_start(problem: Problem, *, seconds: float = SECONDS) -> Start:
         forces = np.zeros((len(problem.assembly.joints), 2, 2))
     found: list[Start] = []
     for group in groups_of(problem):
-        start = _of_group(_Law(group.problem), seconds)
+        start = _of_group(_Law(group.problem))
         found.append(start)
         if start.accelerations is not None and start.forces is not None:
             unit = group.problem.unit_force / problem.unit_force
@@ -92,7 +91,7 @@ def may_start(problem: Problem, *, seconds: float = SECONDS) -> Start:
     return Start(moves=False if all(each.moves is False for each in found) else None)
 
 
-def _of_group(law: _Law, seconds: float) -> Start:
+def _of_group(law: _Law) -> Start:
     """Tell whether blocks of a group may start to move."""
     if not law.fall:
         return Start(moves=False)
@@ -104,7 +103,7 @@ def _of_group(law: _Law, seconds: float) -> Start:
         law.bounds,
         whole=law.whole,
         gap=least / 2 * law.fall,
-        seconds=seconds,
+        seconds=SECONDS,
     )
     power = float(-law.cost @ found.values) / law.fall if found.values.size else 0.0
     if power > least:

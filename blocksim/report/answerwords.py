@@ -156,7 +156,7 @@ def ends_proved_words(answer: Bracket[Any]) -> str:
     )
 
 
-def values_tried(answer: Bracket[Any], digits: int = 9) -> str:
+def values_tried(answer: Bracket[Any]) -> str:
     """Say the two values tried."""
     if answer.low is None and answer.high is None:
         return f"NO LIMIT: {answer.over} may be anything"
@@ -165,9 +165,9 @@ def values_tried(answer: Bracket[Any], digits: int = 9) -> str:
     if answer.low is not None and answer.low == answer.high:
         # Both are the end of what may be asked: whatever is more stands, or falls.
         sides = "any above it stands" if answer.stands == "high" else "any below it stands"
-        return f"{answer.over.upper()}: {answer.low:.{digits}g}{unit} is the limit, {sides}"
+        return f"{answer.over.upper()}: {answer.low:.9g}{unit} is the limit, {sides}"
     parts = [
-        f"{'stands' if answer.stands == end else 'falls'} at {value:.{digits}g}{unit}"
+        f"{'stands' if answer.stands == end else 'falls'} at {value:.9g}{unit}"
         for end, value in ends
         if value is not None
     ]

@@ -29,6 +29,8 @@ class Looking:
     """A problem as it is looked at where blocks are held, and where they move.
 
     `asked`: Whose forces are asked for, where the engine knows other blocks.
+
+    It has:
     `asks`: Whether limit analysis can be asked about it.
     `far`: How far the farthest block is from the origin [size].
     `slips`: Slip above which a motion slides.

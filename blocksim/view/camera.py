@@ -60,6 +60,8 @@ class Camera:
     `middle`, (3,): What it looks at.
     `reach`: Half-diagonal of what is shown.
     `aside`, `above`: Where the eye is: turned about the vertical, and raised.
+
+    It has:
     `eye`, (3,).
     `scale`: Pixels in a length of 1 at the distance of 1.
     `shift`, (2,): The place of the middle [pixels].

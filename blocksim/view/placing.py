@@ -18,6 +18,8 @@ class Placing:
     """Convex pieces of blocks, and joints, carried by the poses of a recording.
 
     `sides`: Corners that a piece is to have at least.
+
+    It has:
     `owner`, (pieces,): The block that each piece belongs to.
     `sides`: Corners of each piece; what has fewer repeats its last one.
     `outlines`, (pieces, sides, 2): Of the pieces, from the centres of their blocks.

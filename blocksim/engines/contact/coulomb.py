@@ -156,6 +156,8 @@ class ContactStatus:
     """Contacts that do as said: what makes forces of those of springs.
 
     `contacts`, (joints, 2).
+
+    It has:
     `some_slide`: Whether any contact slides.
     `side`, (joints, 2): 1 and -1 where contacts slide, up and down.
     `slope`, (joints, 2): Friction per pressure where that is known and a contact slides.

@@ -36,6 +36,8 @@ class SpatialEquilibrium:
     those of many times all weight.
 
     `found`: What the programme found.
+
+    It has:
     `margin`: By how much every point presses, in units of the lighter block's weight beside it
         over the points of its joint; below 0 it would have to pull. At most 1, -inf where not
         even pulling would help.
