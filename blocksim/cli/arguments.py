@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass
 from inspect import Parameter, getdoc, signature
 from pathlib import Path
 from types import NoneType, UnionType
@@ -88,6 +88,12 @@ class Argument(Option):
     """What is said of an argument, which may be left out."""
 
 
+def option(about: str, **known: Any) -> Any:
+    """Make a field of a group of options, None where it is not given; see `Option`."""
+    said = Option(about=about, **known)
+    return field(default=None, metadata={Field.__name__: said})
+
+
 class _Argument(click.Argument):
     """An argument that is told in the help, too."""
 
@@ -144,9 +150,10 @@ def command_of(function: Callable[..., None], name: str | None = None) -> Comman
         if is_dataclass(hint) and isinstance(hint, type):
             groups[each.name] = hint
             own = get_type_hints(hint, include_extras=True)
-            for field in fields(hint):
-                parameters.append(_parameter(field.name, own[field.name], field.default))
-                headings[field.name] = getattr(hint, "heading", "Options")
+            for one in fields(hint):
+                said = one.metadata.get(Field.__name__)
+                parameters.append(_parameter(one.name, own[one.name], one.default, said=said))
+                headings[one.name] = getattr(hint, "heading", "Options")
         else:
             needed = each.default is Parameter.empty
             default = None if needed else each.default
@@ -155,7 +162,7 @@ def command_of(function: Callable[..., None], name: str | None = None) -> Comman
     def called(**given: Any) -> None:
         given = {key: _listed(value) for key, value in given.items()}
         made = {
-            key: group(**{field.name: given.pop(field.name) for field in fields(group)})
+            key: group(**{one.name: given.pop(one.name) for one in fields(group)})
             for key, group in groups.items()
         }
         function(**given, **made)
@@ -171,10 +178,16 @@ def _listed(value: object) -> object:
 
 
 def _parameter(
-    name: str, hint: Any, default: object, *, needed: bool = False
+    name: str,
+    hint: Any,
+    default: object,
+    *,
+    needed: bool = False,
+    said: Option | None = None,
 ) -> click.Parameter:
-    """Make an option or an argument of an annotated type."""
-    kind, said = _said(hint)
+    """Make an option or an argument of a type, annotated where nothing else is said."""
+    kind, annotated = _said(hint)
+    said = said or annotated
     if needed and said == Option():
         said = Argument()
     if isinstance(said, Argument):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Annotated, ClassVar
 
 from blocksim.arch.dimensions import LINES, friction_of
-from blocksim.cli.arguments import Option
+from blocksim.cli.arguments import Option, option
 from blocksim.common.checks import FRICTION_ANGLE, LEAN_DEG, RATIO, require
 
 OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters", "tolerance", "depth",
@@ -63,71 +63,43 @@ class Given:
 
     heading: ClassVar[str] = "What is built"
 
-    alpha: Annotated[
-        float | None, Option(about="Half-angle of embrace in degrees, 0 to 180.")
-    ] = None
-    eta: Annotated[float | None, Option(about="Thickness-to-radius ratio, up to 2.")] = None
-    span: Annotated[
-        float | None,
-        Option(about="Instead of --alpha and --eta: distance between the springings in m."),
-    ] = None
-    rise: Annotated[
-        float | None, Option(about="Beside --span: height of the crown above them in m.")
-    ] = None
-    thickness: Annotated[
-        float | None, Option(about="Beside --span: thickness of the arch in m.")
-    ] = None
-    at: Annotated[
-        str | None,
-        Option(
-            metavar="LINE",
-            about=f"Line of --span and --rise: {', '.join(LINES)}; the intrados if left out, "
-            "which gives the clear span.",
-        ),
-    ] = None
-    ratio: Annotated[
-        float | None,
-        Option(
-            about="Instead of --eta or --thickness: thickness over the least one that stands, "
-            "as built.",
-            range=RATIO,
-        ),
-    ] = None
+    alpha: float | None = option("Half-angle of embrace in degrees, 0 to 180.")
+    eta: float | None = option("Thickness-to-radius ratio, up to 2.")
+    span: float | None = option(
+        "Instead of --alpha and --eta: distance between the springings in m."
+    )
+    rise: float | None = option("Beside --span: height of the crown above them in m.")
+    thickness: float | None = option("Beside --span: thickness of the arch in m.")
+    at: str | None = option(
+        f"Line of --span and --rise: {', '.join(LINES)}; the intrados if left out, "
+        "which gives the clear span.",
+        metavar="LINE",
+    )
+    ratio: float | None = option(
+        "Instead of --eta or --thickness: thickness over the least one that stands, as built.",
+        range=RATIO,
+    )
     mu: Mu = None
-    friction_angle: Annotated[
-        float | None,
-        Option(about="Instead of --mu: angle of friction in degrees.", range=FRICTION_ANGLE),
-    ] = None
-    voussoirs: Annotated[
-        int | None, Option(about="Number of voussoirs, 3 to 10000; 27 if left out.")
-    ] = None
-    weight: Annotated[
-        str | None,
-        Option(
-            about="Where weight acts: centreline, or sector, as it does in true voussoirs. "
-            "If left out: sector with --span, else centreline."
-        ),
-    ] = None
-    unit_weight: Annotated[
-        float | None,
-        Option(about="Unit weight of the blocks in kN/m3; 20 in arches if left out."),
-    ] = None
+    friction_angle: float | None = option(
+        "Instead of --mu: angle of friction in degrees.", range=FRICTION_ANGLE
+    )
+    voussoirs: int | None = option("Number of voussoirs, 3 to 10000; 27 if left out.")
+    weight: str | None = option(
+        "Where weight acts: centreline, or sector, as it does in true voussoirs. "
+        "If left out: sector with --span, else centreline."
+    )
+    unit_weight: float | None = option(
+        "Unit weight of the blocks in kN/m3; 20 in arches if left out."
+    )
     depth: Depth = None
-    lean: Annotated[
-        float | None,
-        Option(
-            about="Angle by which gravity leans out of the plane, in degrees.", range=LEAN_DEG
-        ),
-    ] = None
-    parameters: Annotated[
-        list[str] | None,
-        Option(
-            name="--with",
-            metavar="NAME=VALUE",
-            about="Parameter of a kind of structure (blocksim kinds NAME lists them); "
-            "repeatable.",
-        ),
-    ] = None
+    lean: float | None = option(
+        "Angle by which gravity leans out of the plane, in degrees.", range=LEAN_DEG
+    )
+    parameters: list[str] | None = option(
+        "Parameter of a kind of structure (blocksim kinds NAME lists them); repeatable.",
+        name="--with",
+        metavar="NAME=VALUE",
+    )
     tolerance: Tolerance = None
     unit: Unit = None
     layer: Layer = None

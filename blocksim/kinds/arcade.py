@@ -57,7 +57,7 @@ class Arcade(Maker):
     about: ClassVar[str] = "several arches on free piers, between fixed abutments"
     row_types: ClassVar[Mapping[str, type[Table]]] = {"each_span": Span, "each_pier": Pier}
 
-    arch: ArchKind = parameter(  # noqa: RUF009 - a frozen arch
+    arch: ArchKind = parameter(
         SEMICIRCLE, "the arch: a table with its kind and parameters", nested="table"
     )
     spans: int = count(2, "number of arches", high=100)

@@ -30,7 +30,7 @@ class Portal(Maker):
     name: ClassVar[str] = "portal"
     about: ClassVar[str] = "an arch on two piers or buttresses"
 
-    arch: ArchKind = parameter(  # noqa: RUF009 - a frozen arch
+    arch: ArchKind = parameter(
         SEMICIRCLE, "the arch: a table with its kind and parameters", nested="table"
     )
     pier_width: float = metres(
