@@ -61,7 +61,10 @@ def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Rows:
 @pytest.fixture
 def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """Sweep without other processes: they take seconds to start, and have their own tests."""
-    monkeypatch.setattr(run, "processes", lambda _: ThreadPoolExecutor(1))
+    hands = run.Hands
+    monkeypatch.setattr(
+        run, "Hands", lambda workers, given: hands(workers, given or ThreadPoolExecutor(1))
+    )
 
 
 @pytest.fixture(scope="session")
