@@ -72,12 +72,12 @@ class Hands:
 
     def leave(self, *, wait: bool = False) -> None:
         """Let go of processes, after their work or at once."""
-        if not isinstance(self._executor, Crew) or self._executor is self._given:
+        if self._given is not None or self._executor is None:
             return
-        if wait:
-            self._executor.shutdown()
-        else:
+        if not wait and isinstance(self._executor, Crew):
             self._executor.end()
+        else:
+            self._executor.shutdown()
 
 
 @contextmanager
