@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from dataclasses import Field as Declared
 from dataclasses import dataclass, field, fields, is_dataclass
 from inspect import Parameter, getdoc, signature
 from pathlib import Path
@@ -88,10 +89,20 @@ class Argument(Option):
     """What is said of an argument, which may be left out."""
 
 
-def option(about: str, **known: Any) -> Any:
-    """Make a field of a group of options, None where it is not given; see `Option`."""
+NEEDED = Parameter.empty
+"""Default of an argument that cannot be left out."""
+
+
+def option(about: str, *, default: Any = None, **known: Any) -> Any:
+    """Declare an option of a command, or of a group of options; see `Option`."""
     said = Option(about=about, **known)
-    return field(default=None, metadata={Field.__name__: said})
+    return field(default=default, metadata={Field.__name__: said})
+
+
+def argument(about: str, *, default: Any = None, **known: Any) -> Any:
+    """Declare an argument of a command; see `Option`."""
+    said = Argument(about=about, **known)
+    return field(default=default, metadata={Field.__name__: said})
 
 
 class _Argument(click.Argument):
@@ -114,8 +125,8 @@ class Command(click.Command):
             _, _, order = self.make_parser(ctx).parse_args(list(args))
             for each, times in Counter(order).items():
                 if times > 1 and isinstance(each, click.Option) and not each.multiple:
-                    option = "/".join([*each.opts, *each.secondary_opts])
-                    said = f"{option} is given {times} times: must be given once"
+                    flags = "/".join([*each.opts, *each.secondary_opts])
+                    said = f"{flags} is given {times} times: must be given once"
                     raise click.UsageError(said)
         return super().parse_args(ctx, args)
 
@@ -136,28 +147,24 @@ class Command(click.Command):
 def command_of(function: Callable[..., None], name: str | None = None) -> Command:
     """Make a command of a function.
 
-    `function`: Each parameter is annotated with its type and an `Option` or an `Argument`;
-        without either it is an option, an argument if it has no default. Those whose type is a
-        dataclass get one, whose fields are options below its `heading`.
+    `function`: The default of each parameter is an `option` or an `argument`, or its type is a
+        dataclass of such. Of these it gets one, whose fields are options below its `heading`.
     `name`: Of the command.
     """
     groups: dict[str, type[Any]] = {}
     parameters: list[click.Parameter] = []
     headings: dict[str, str] = {}
-    hints = get_type_hints(function, include_extras=True)
+    hints = get_type_hints(function)
     for each in signature(function).parameters.values():
         hint = hints[each.name]
         if is_dataclass(hint) and isinstance(hint, type):
             groups[each.name] = hint
-            own = get_type_hints(hint, include_extras=True)
+            own = get_type_hints(hint)
             for one in fields(hint):
-                said = one.metadata.get(Field.__name__)
-                parameters.append(_parameter(one.name, own[one.name], one.default, said=said))
+                parameters.append(_parameter(one.name, own[one.name], one))
                 headings[one.name] = getattr(hint, "heading", "Options")
         else:
-            needed = each.default is Parameter.empty
-            default = None if needed else each.default
-            parameters.append(_parameter(each.name, hint, default, needed=needed))
+            parameters.append(_parameter(each.name, hint, each.default))
 
     def called(**given: Any) -> None:
         given = {key: _listed(value) for key, value in given.items()}
@@ -177,20 +184,12 @@ def _listed(value: object) -> object:
     return None if value == [] else value
 
 
-def _parameter(
-    name: str,
-    hint: Any,
-    default: object,
-    *,
-    needed: bool = False,
-    said: Option | None = None,
-) -> click.Parameter:
-    """Make an option or an argument of a type, annotated where nothing else is said."""
-    kind, annotated = _said(hint)
-    said = said or annotated
-    if needed and said == Option():
-        said = Argument()
+def _parameter(name: str, hint: Any, declared: Declared[Any]) -> click.Parameter:
+    """Make an option or an argument of a type."""
+    kind, said, default = _kind(hint), declared.metadata[Field.__name__], declared.default
     if isinstance(said, Argument):
+        needed = default is NEEDED
+        default = None if needed else default
         made = _Argument([name], type=_type(kind, said), required=needed, default=default)
         made.about = said.about
         return made
@@ -203,7 +202,6 @@ def _parameter(
         type=_type(get_args(kind)[0] if many else kind, said),
         multiple=many,
         default=default,
-        required=needed,
         metavar=said.metavar,
         show_default=default is not None,
         help=said.about,
@@ -215,25 +213,11 @@ def _as_list(context: object, parameter: object, value: tuple[str, ...]) -> list
     return list(value)
 
 
-def _said(hint: Any) -> tuple[Any, Option]:
-    """Return the type of an annotation, None left out, and what is said of it."""
-    found = Option()
-    for part in _parts(hint):
-        if isinstance(part, Option):
-            found = part
-        elif part is not NoneType:
-            hint = part
-    return hint, found
-
-
-def _parts(hint: Any) -> Iterator[Any]:
-    """Go through what an annotation consists of."""
-    if get_origin(hint) in {Union, UnionType} or hasattr(hint, "__metadata__"):
-        for part in get_args(hint):
-            yield from _parts(part)
-        yield from getattr(hint, "__metadata__", ())
-    else:
-        yield hint
+def _kind(hint: Any) -> Any:
+    """Return the type of an annotation, None left out."""
+    if get_origin(hint) not in {Union, UnionType}:
+        return hint
+    return next(part for part in get_args(hint) if part is not NoneType)
 
 
 def _type(kind: Any, said: Option) -> Any:

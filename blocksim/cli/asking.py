@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import Annotated
+from pathlib import Path
 
 import click
 
@@ -12,24 +12,24 @@ from blocksim.ask.check import check as ask_check
 from blocksim.ask.options import Options
 from blocksim.blocks.joints import joint_names
 from blocksim.cli.acting import Crossed, Loading
-from blocksim.cli.arguments import Option
+from blocksim.cli.arguments import option
 from blocksim.cli.built import Given
 from blocksim.cli.curves import cross, require_curves, write_curves
 from blocksim.cli.options import (
+    CASES,
     EXIT_CODES,
+    JOINT,
+    JSON,
+    METHOD,
+    MUST_REST,
+    OVER,
+    PROOF,
+    REDUCE,
+    SCENE,
+    SET,
+    SPATIAL,
     THICKNESS,
-    AtJoint,
-    CasesOption,
-    Json,
-    MethodOption,
-    MustRest,
-    Over,
-    ProofFile,
-    Reduce,
-    Scene,
-    Set,
-    Spatial,
-    Within,
+    WITHIN,
     named_options,
     refuse,
     settings_of,
@@ -49,16 +49,16 @@ OF_ONE = "left out beside --cases: it is of one case"
 def check(
     given: Given,
     loading: Loading,
-    scene: Scene = None,
-    method: MethodOption = "auto",
-    settings: Set = None,
-    joint: AtJoint = None,
-    reduce: Reduce = None,
-    must_rest: MustRest = False,
-    spatial: Spatial = False,
-    proof: ProofFile = None,
-    cases: CasesOption = None,
-    as_json: Json = False,
+    scene: str | None = SCENE,
+    method: str = METHOD,
+    settings: list[str] | None = SET,
+    joint: str | None = JOINT,
+    reduce: bool | None = REDUCE,
+    must_rest: bool = MUST_REST,
+    spatial: bool = SPATIAL,
+    proof: Path | None = PROOF,
+    cases: Path | None = CASES,
+    as_json: bool = JSON,
 ) -> None:
     """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided.
 
@@ -112,16 +112,16 @@ def bracket(
     given: Given,
     loading: Loading,
     crossed: Crossed,
-    scene: Scene = None,
-    over: Over = None,
-    within: Within = None,
-    method: MethodOption = "auto",
-    tol: Annotated[float, Option(about="Relative width of the bracket.")] = 0.005,
-    settings: Set = None,
-    reduce: Reduce = None,
-    spatial: Spatial = False,
-    proof: ProofFile = None,
-    as_json: Json = False,
+    scene: str | None = SCENE,
+    over: str | None = OVER,
+    within: tuple[float, float] | None = WITHIN,
+    method: str = METHOD,
+    tol: float = option("Relative width of the bracket.", default=0.005),
+    settings: list[str] | None = SET,
+    reduce: bool | None = REDUCE,
+    spatial: bool = SPATIAL,
+    proof: Path | None = PROOF,
+    as_json: bool = JSON,
 ) -> None:
     """Find where it starts to fall as one parameter changes: how thin an arch can be.
 

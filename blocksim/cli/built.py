@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from typing import Annotated, ClassVar
+from typing import ClassVar
 
 from blocksim.arch.dimensions import LINES, friction_of
-from blocksim.cli.arguments import Option, option
+from blocksim.cli.arguments import option
 from blocksim.common.checks import FRICTION_ANGLE, LEAN_DEG, RATIO, require
 
 OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters", "tolerance", "depth",
@@ -18,39 +18,22 @@ PARAMETERS = {"alpha": "half_angle_deg"}
 LARGEST_FRICTION = 10.0
 """Coefficient above which, up to 90, one is taken for an angle."""
 
-Mu = Annotated[float | None, Option(about="Friction coefficient, above 0; inf allowed.")]
-Depth = Annotated[
-    float | None,
-    Option(about="Depth out of the plane in m; 1 if left out."),
-]
-Tolerance = Annotated[
-    float | None,
-    Option(
-        about="Mortar joints, gaps and overlaps of a drawing up to this are closed, in m; "
-        "what rounding of its coordinates explains if left out."
-    ),
-]
-Unit = Annotated[
-    str | None,
-    Option(
-        about="Of a drawing that has none: m, mm, cm, dm, in, ft, or metres that a unit is."
-    ),
-]
-Layer = Annotated[
-    list[str] | None,
-    Option(
-        metavar="ROLE=NAME",
-        about="Layer of a drawing that is read as blocks or as supports, or is ignored; "
-        "repeatable. If left out, layers of these names are.",
-    ),
-]
-Snap = Annotated[
-    float | None,
-    Option(
-        about="Ends of lines of a drawing that are so near are one corner, in m; 1e-4 of "
-        "the shorter line if left out."
-    ),
-]
+MU = option("Friction coefficient, above 0; inf allowed.")
+DEPTH = option("Depth out of the plane in m; 1 if left out.")
+TOLERANCE = option(
+    "Mortar joints, gaps and overlaps of a drawing up to this are closed, in m; "
+    "what rounding of its coordinates explains if left out."
+)
+UNIT = option("Of a drawing that has none: m, mm, cm, dm, in, ft, or metres that a unit is.")
+LAYER = option(
+    "Layer of a drawing that is read as blocks or as supports, or is ignored; "
+    "repeatable. If left out, layers of these names are.",
+    metavar="ROLE=NAME",
+)
+SNAP = option(
+    "Ends of lines of a drawing that are so near are one corner, in m; 1e-4 of "
+    "the shorter line if left out."
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +62,7 @@ class Given:
         "Instead of --eta or --thickness: thickness over the least one that stands, as built.",
         range=RATIO,
     )
-    mu: Mu = None
+    mu: float | None = MU
     friction_angle: float | None = option(
         "Instead of --mu: angle of friction in degrees.", range=FRICTION_ANGLE
     )
@@ -91,7 +74,7 @@ class Given:
     unit_weight: float | None = option(
         "Unit weight of the blocks in kN/m3; 20 in arches if left out."
     )
-    depth: Depth = None
+    depth: float | None = DEPTH
     lean: float | None = option(
         "Angle by which gravity leans out of the plane, in degrees.", range=LEAN_DEG
     )
@@ -100,10 +83,10 @@ class Given:
         name="--with",
         metavar="NAME=VALUE",
     )
-    tolerance: Tolerance = None
-    unit: Unit = None
-    layer: Layer = None
-    snap: Snap = None
+    tolerance: float | None = TOLERANCE
+    unit: str | None = UNIT
+    layer: list[str] | None = LAYER
+    snap: float | None = SNAP
 
     @property
     def sizes(self) -> dict[str, object]:

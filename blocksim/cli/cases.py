@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Annotated, Any, get_type_hints
+from typing import Annotated, Any
 
 from blocksim.ask.cases import Case, Cases, Factors, check_cases
 from blocksim.ask.options import Options
@@ -14,13 +14,13 @@ from blocksim.blocks.given import Body
 from blocksim.blocks.loads import LoadsOf
 from blocksim.blocks.problem import Load, Problem
 from blocksim.cli.acting import Loading
-from blocksim.cli.arguments import Option
 from blocksim.cli.built import Given
 from blocksim.cli.options import named_options, option_of
 from blocksim.cli.output import progress
 from blocksim.cli.subject import anything_asked, is_many
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
+from blocksim.common.fields import fields_of
 from blocksim.common.tables import Written, as_said
 from blocksim.kinds.scenarios import written_in
 
@@ -127,8 +127,7 @@ def _under(problem: Problem, kind: str, loads: list[LoadEntry], *, with_load: bo
 
 def _require_ranges(own: Mapping[str, Any]) -> None:
     """Check what options would check of themselves."""
-    hints = get_type_hints(Loading, include_extras=True)
+    known = fields_of(Loading)
     for name, value in own.items():
-        for said in getattr(hints[name], "__metadata__", ()):
-            if isinstance(said, Option) and said.range is not None and value is not None:
-                said.range.require(option_of(name), value)
+        if (numbers := known[name].range) is not None and value is not None:
+            numbers.require(option_of(name), value)

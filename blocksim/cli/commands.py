@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Literal
 
 from blocksim.ask.methods import choose
 from blocksim.ask.simulate import simulate as let_go
 from blocksim.ask.spread import Spreading
 from blocksim.blocks.problem import Problem
 from blocksim.cli.acting import Loading
-from blocksim.cli.arguments import Argument, Option
+from blocksim.cli.arguments import argument, option
 from blocksim.cli.built import Given
 from blocksim.cli.drawing import write_still
 from blocksim.cli.filming import (
+    BESIDE,
+    ENGINE,
     HEIGHT,
     MODELS,
+    PIXELS,
+    SLOW,
     TABLES,
-    Beside,
-    EngineOption,
-    Height,
-    Slow,
-    Time,
-    View,
+    TIME,
+    VIEW,
     export,
     film,
     recordings,
@@ -30,11 +30,11 @@ from blocksim.cli.filming import (
     require_pixels,
 )
 from blocksim.cli.options import (
+    MUST_REST,
     OWN,
-    MustRest,
-    Scene,
-    Set,
-    Spatial,
+    SCENE,
+    SET,
+    SPATIAL,
     named_options,
     refuse,
     require_given,
@@ -56,20 +56,15 @@ RECORDED = Range(low=0, high=600, unit="s", above=True)
 def simulate(
     given: Given,
     loading: Loading,
-    out: Annotated[Path | None, Option(about="Recording to write, .npz; required.")] = None,
-    scene: Scene = None,
-    method: Annotated[
-        str, Option(about=f"auto, or an engine: {', '.join(NAMES)}{OWN}.")
-    ] = "auto",
-    over: Annotated[
-        str | None, Option(about="spread: move the supports until it has fallen.")
-    ] = None,
-    seconds: Annotated[
-        float | None,
-        Option(about="Seconds to record; until decided if left out.", range=RECORDED),
-    ] = None,
-    settings: Set = None,
-    spatial: Spatial = False,
+    out: Path | None = option("Recording to write, .npz; required."),
+    scene: str | None = SCENE,
+    method: str = option(f"auto, or an engine: {', '.join(NAMES)}{OWN}.", default="auto"),
+    over: str | None = option("spread: move the supports until it has fallen."),
+    seconds: float | None = option(
+        "Seconds to record; until decided if left out.", range=RECORDED
+    ),
+    settings: list[str] | None = SET,
+    spatial: bool = SPATIAL,
 ) -> None:
     """Let it go and record its motion."""
     problem = anything_asked(scene, given, loading, spatial=spatial, thick=True, out=out)
@@ -116,24 +111,18 @@ def _spread(
 def render(
     given: Given,
     loading: Loading,
-    out: Annotated[
-        Path | None,
-        Option(
-            about="File to write: .pdf, .svg, .png or .dxf, .mp4 or .gif, or .glb, .gltf, "
-            ".csv, .json of a recording, or .html to turn blocks in space around; required."
-        ),
-    ] = None,
-    scene: Annotated[
-        str | None,
-        Argument(about="Scenario, structure, or a recording: an .npz file."),
-    ] = None,
-    beside: Beside = None,
-    view: View = "2d",
-    slow: Slow = None,
-    time: Time = None,
-    height: Height = None,
-    method: EngineOption = None,
-    must_rest: MustRest = False,
+    out: Path | None = option(
+        "File to write: .pdf, .svg, .png or .dxf, .mp4 or .gif, or .glb, .gltf, "
+        ".csv, .json of a recording, or .html to turn blocks in space around; required."
+    ),
+    scene: str | None = argument("Scenario, structure, or a recording: an .npz file."),
+    beside: Path | None = BESIDE,
+    view: Literal["2d", "3d"] = VIEW,
+    slow: float | None = SLOW,
+    time: float | None = TIME,
+    height: int | None = PIXELS,
+    method: str | None = ENGINE,
+    must_rest: bool = MUST_REST,
 ) -> None:
     """Draw what is built to scale, or film its motion.
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, cast
+from typing import Any, cast
 
-from blocksim.cli.arguments import Argument, Option
-from blocksim.cli.built import Depth, Layer, Mu, Snap, Tolerance, Unit
+from blocksim.cli.arguments import NEEDED, argument, option
+from blocksim.cli.built import DEPTH, LAYER, MU, SNAP, TOLERANCE, UNIT
 from blocksim.cli.options import named_options, require_given
 from blocksim.cli.output import picture_kind, save_picture, say
 from blocksim.cli.structures import reading_of
@@ -20,28 +20,21 @@ from blocksim.reading.drawing import Drawing
 
 
 def convert(
-    source: Annotated[
-        str, Argument(about="A drawing, .dxf or .svg, a mesh, or an assembly of compas, .json.")
-    ],
-    out: Annotated[
-        Path | None, Option(about="Structure file to write, .json; required.")
-    ] = None,
-    picture: Annotated[
-        Path | None,
-        Option(
-            about="Picture of what was read of a drawing, and of what was refused and where: "
-            ".png, .svg or .pdf; --out may then be left out."
-        ),
-    ] = None,
-    mu: Mu = None,
-    unit: Unit = None,
-    layer: Layer = None,
-    snap: Snap = None,
-    depth: Depth = None,
-    tolerance: Tolerance = None,
-    fixed: Annotated[
-        str | None, Option(about="Blocks that stay where they are: ids, with commas.")
-    ] = None,
+    source: str = argument(
+        "A drawing, .dxf or .svg, a mesh, or an assembly of compas, .json.", default=NEEDED
+    ),
+    out: Path | None = option("Structure file to write, .json; required."),
+    picture: Path | None = option(
+        "Picture of what was read of a drawing, and of what was refused and where: "
+        ".png, .svg or .pdf; --out may then be left out."
+    ),
+    mu: float | None = MU,
+    unit: str | None = UNIT,
+    layer: list[str] | None = LAYER,
+    snap: float | None = SNAP,
+    depth: float | None = DEPTH,
+    tolerance: float | None = TOLERANCE,
+    fixed: str | None = option("Blocks that stay where they are: ids, with commas."),
 ) -> None:
     """Turn a drawing into a structure file, so that loads, weights or friction can be added."""
     require_given(**({} if picture else {"out": out}))

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any
 
 from blocksim.ask.check import check
 from blocksim.ask.methods import choose
@@ -15,7 +15,7 @@ from blocksim.ask.simulate import simulate
 from blocksim.blocks.acting import tilt_and_lean
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.cli.acting import Loading
-from blocksim.cli.arguments import Option
+from blocksim.cli.arguments import option
 from blocksim.cli.built import Given
 from blocksim.cli.options import OWN, named_options, refuse
 from blocksim.cli.output import progress, say
@@ -48,33 +48,20 @@ ROUGH = 1e-4
 MODELS, TABLES = ("glb", "gltf"), ("csv", "json")
 """Endings of recordings as glTF, and as numbers."""
 
-Beside = Annotated[Path | None, Option(about="A second recording, .npz, to show side by side.")]
-View = Annotated[Literal["2d", "3d"], Option(about="From the front, or in perspective.")]
-Slow = Annotated[
-    float | None,
-    Option(
-        about="Times slower than it happened (by default it takes about 6 s).",
-        range=Range(low=0, high=1000, above=True),
-    ),
-]
-Time = Annotated[
-    float | None,
-    Option(
-        about="For .png, .svg, .pdf: time since the release, as the clock shows it (the end).",
-        range=Range(low=0, high=math.inf, unit="s"),
-    ),
-]
-Height = Annotated[
-    int | None,
-    Option(about="In pixels: of a frame (720 if left out; frames are 16:9) or a .png picture."),
-]
-EngineOption = Annotated[
-    str | None,
-    Option(
-        name="--method",
-        about=f"Simulates a scenario: auto (if left out), {', '.join(NAMES)}{OWN}.",
-    ),
-]
+BESIDE = option("A second recording, .npz, to show side by side.")
+VIEW = option("From the front, or in perspective.", default="2d")
+SLOW = option(
+    "Times slower than it happened (by default it takes about 6 s).",
+    range=Range(low=0, high=1000, above=True),
+)
+TIME = option(
+    "For .png, .svg, .pdf: time since the release, as the clock shows it (the end).",
+    range=Range(low=0, high=math.inf, unit="s"),
+)
+PIXELS = option("In pixels: of a frame (720 if left out; frames are 16:9) or a .png picture.")
+ENGINE = option(
+    f"Simulates a scenario: auto (if left out), {', '.join(NAMES)}{OWN}.", name="--method"
+)
 
 
 def require_height(height: int) -> None:

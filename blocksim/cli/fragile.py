@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +13,10 @@ from blocksim.ask.fragility import fragility as find
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import read_table
 from blocksim.cli.acting import Loading
-from blocksim.cli.arguments import Option
+from blocksim.cli.arguments import option
 from blocksim.cli.built import Given
 from blocksim.cli.curves import KINDS as CURVES
-from blocksim.cli.options import Json, MethodOption, Scene, Set, named_options, settings_of
+from blocksim.cli.options import JSON, METHOD, SCENE, SET, named_options, settings_of
 from blocksim.cli.output import answer_with, picture_kind, progress, write_files
 from blocksim.cli.subject import problem_asked
 from blocksim.common.checks import require
@@ -33,28 +33,20 @@ MOST_AMPLITUDES = 1000
 def fragility(
     given: Given,
     loading: Loading,
-    scene: Scene = None,
-    record: Annotated[
-        list[Path] | None,
-        Option(about="Record of the ground, a .csv file as of --shake; repeatable; required."),
-    ] = None,
-    amplitudes: Annotated[
-        tuple[float, float, int] | None,
-        Option(
-            metavar="LOW HIGH COUNT",
-            about="Amplitudes in g to which each record is scaled, evenly spaced; required.",
-        ),
-    ] = None,
-    out: Annotated[
-        list[Path] | None,
-        Option(
-            about="File to write: .csv with a row an amplitude, or a curve, .pdf, .svg, "
-            ".png; repeatable."
-        ),
-    ] = None,
-    method: MethodOption = "auto",
-    settings: Set = None,
-    as_json: Json = False,
+    scene: str | None = SCENE,
+    record: list[Path] | None = option(
+        "Record of the ground, a .csv file as of --shake; repeatable; required."
+    ),
+    amplitudes: tuple[float, float, int] | None = option(
+        "Amplitudes in g to which each record is scaled, evenly spaced; required.",
+        metavar="LOW HIGH COUNT",
+    ),
+    out: list[Path] | None = option(
+        "File to write: .csv with a row an amplitude, or a curve, .pdf, .svg, .png; repeatable."
+    ),
+    method: str = METHOD,
+    settings: list[str] | None = SET,
+    as_json: bool = JSON,
 ) -> None:
     """Find which share of records of the ground brings it down, by their amplitude."""
     problem = problem_asked(scene, given, loading, thick=True, record=record,

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import platform
-from typing import Annotated
 
 from blocksim import __version__
 from blocksim.ask import doctor as installed
 from blocksim.ask.methods import METHODS
-from blocksim.cli.arguments import Option
+from blocksim.cli.arguments import option
 from blocksim.cli.options import named_options
 from blocksim.cli.output import say
 from blocksim.cli.terminal import Table, show
+
+EVERY = ", ".join(METHODS.shipped)
 
 
 def doctor() -> None:
@@ -27,10 +28,7 @@ def doctor() -> None:
 
 
 def cite(
-    methods: Annotated[
-        list[str] | None,
-        Option(name="--method", about=f"Repeatable, or all: {', '.join(METHODS.shipped)}."),
-    ] = None,
+    methods: list[str] | None = option(f"Repeatable, or all: {EVERY}.", name="--method"),
 ) -> None:
     """Print BibTeX of blocksim, of the paper, and of what methods rest on."""
     with named_options():

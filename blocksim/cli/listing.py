@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
 
 from blocksim.blocks.vehicles import shipped_vehicles, vehicle_of
-from blocksim.cli.arguments import Argument
+from blocksim.cli.arguments import argument
 from blocksim.cli.output import say
 from blocksim.cli.terminal import Table, show
 from blocksim.common.errors import InputError, perhaps
@@ -50,9 +49,7 @@ def list_scenarios() -> None:
 
 
 def list_kinds(
-    name: Annotated[
-        str | None, Argument(about="One of them, whose parameters are to be listed.")
-    ] = None,
+    name: str | None = argument("One of them, whose parameters are to be listed."),
 ) -> None:
     """List the kinds of structures, or the parameters of one."""
     if name is None:

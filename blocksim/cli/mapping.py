@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Literal
 
 import click
 
-from blocksim.cli.arguments import Argument, Option
-from blocksim.cli.options import Json, require_given
+from blocksim.cli.arguments import argument, option
+from blocksim.cli.options import JSON, require_given
 from blocksim.cli.output import answer_with, picture_kind, progress, save_picture, say
 from blocksim.common.checks import Range, require
 from blocksim.common.errors import MISSING, InputError
@@ -21,33 +21,25 @@ OfWeight = Literal["centreline", "sector"]
 
 
 def draw_map(
-    out: Annotated[
-        Path | None,
-        Option(
-            about="Picture, .svg, .png or .pdf, page, .html, or numbers, .csv; required "
-            "without --table or --json."
-        ),
-    ] = None,
-    lines: Annotated[
-        bool, Option(name="--lines", about="Dividing lines and lines of equal alpha instead.")
-    ] = False,
-    zoom: Annotated[
-        str, Option(about="whole, central; with --lines: whole, lower, upper.")
-    ] = "whole",
-    weight: Annotated[
-        OfWeight, Option(about="Where weight acts: of the paper, or of true voussoirs.")
-    ] = "centreline",
-    phi: Annotated[
-        bool, Option(name="--phi", about="Over the friction angle in degrees, up to 90.")
-    ] = False,
-    table: Annotated[
-        bool,
-        Option(name="--table", about="Print Table 1, special angles and rates of the modes."),
-    ] = False,
-    as_json: Json = False,
-    results: Annotated[
-        Path | None, Option(about="validate.json of a `validate` run, shown on the page.")
-    ] = None,
+    out: Path | None = option(
+        "Picture, .svg, .png or .pdf, page, .html, or numbers, .csv; required "
+        "without --table or --json."
+    ),
+    lines: bool = option(
+        "Dividing lines and lines of equal alpha instead.", default=False, name="--lines"
+    ),
+    zoom: str = option("whole, central; with --lines: whole, lower, upper.", default="whole"),
+    weight: OfWeight = option(
+        "Where weight acts: of the paper, or of true voussoirs.", default="centreline"
+    ),
+    phi: bool = option(
+        "Over the friction angle in degrees, up to 90.", default=False, name="--phi"
+    ),
+    table: bool = option(
+        "Print Table 1, special angles and rates of the modes.", default=False, name="--table"
+    ),
+    as_json: bool = JSON,
+    results: Path | None = option("validate.json of a `validate` run, shown on the page."),
 ) -> None:
     """Draw the analytical map of least thickness and collapse modes.
 
@@ -119,24 +111,20 @@ def write_map(
 MET = 1e-12
 """Relative difference up to which a printed number is met."""
 
+FIGURES = Range(low=1, high=25, whole=True)
+
 
 def paper(
-    out: Annotated[
-        Path | None,
-        Argument(about="Folder for the figures and a page, index.html; required.", folder=True),
-    ] = None,
-    figures: Annotated[
-        list[int] | None,
-        Option(
-            name="--figure",
-            metavar="N",
-            range=Range(low=1, high=25, whole=True),
-            about="Only this one; repeatable.",
-        ),
-    ] = None,
-    kind: Annotated[
-        Literal["svg", "png"], Option(name="--format", about="Of the pictures.")
-    ] = "svg",
+    out: Path | None = argument(
+        "Folder for the figures and a page, index.html; required.", folder=True
+    ),
+    figures: list[int] | None = option(
+        "Only this one; repeatable.",
+        name="--figure",
+        metavar="N",
+        range=FIGURES,
+    ),
+    kind: Literal["svg", "png"] = option("Of the pictures.", default="svg", name="--format"),
 ) -> None:
     """Draw every figure of the paper, and compare every number that it prints.
 

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Generator, Mapping
 from contextlib import contextmanager
 from dataclasses import fields
-from pathlib import Path
-from typing import Annotated
 
 from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES
 from blocksim.cli.acting import Crossed, Loading
-from blocksim.cli.arguments import Argument, Option
+from blocksim.cli.arguments import argument, option
 from blocksim.cli.built import PARAMETERS, Given
 from blocksim.common.checks import require
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
@@ -19,83 +17,54 @@ from blocksim.common.files import json_of
 from blocksim.simulation.simulated import SETTINGS
 from blocksim.simulation.verdict import Verdict
 
-Scene = Annotated[
-    str | None,
-    Argument(
-        about="Scenario of an arch, a .toml file or a shipped name; or a structure: a file, "
-        ".json or .toml, or a kind: its name (blocksim kinds), or module:CLASS of your own."
-    ),
-]
+SCENE = argument(
+    "Scenario of an arch, a .toml file or a shipped name; or a structure: a file, "
+    ".json or .toml, or a kind: its name (blocksim kinds), or module:CLASS of your own."
+)
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
 OWN = ", or an engine of your own: its name, or module:ENGINE"
-MethodOption = Annotated[str, Option(about=f"{', '.join(CHOICES)}{OWN}.")]
-Over = Annotated[
-    str | None,
-    Option(about=f"Parameter: {', '.join(FAMILIES)}; thickness, of arches, if left out."),
-]
-Within = Annotated[
-    tuple[float, float] | None,
-    Option(
-        metavar="LOW HIGH",
-        about="Where an engine searches, instead of where limit analysis says. Other methods "
-        "search nowhere and refuse it.",
-    ),
-]
-Set = Annotated[
-    list[str] | None,
-    Option(
-        name="--set",
-        metavar="NAME=VALUE",
-        about=f"Setting of the engine instead of its rule; repeatable: {', '.join(SETTINGS)}.",
-    ),
-]
-Reduce = Annotated[
-    bool | None,
-    Option(
-        name="--reduce/--no-reduce",
-        about="Simulate blocks that stay together as one, and half of an arch: pymunk does, "
-        "pybullet does with arches.",
-    ),
-]
-MustRest = Annotated[
-    bool,
-    Option(
-        name="--must-rest",
-        about="Find out as well whether it must rest, or friction may let it move: "
-        "a second with 8 joints, ten with 28.",
-    ),
-]
-ProofFile = Annotated[
-    Path | None,
-    Option(
-        name="--proof",
-        about="Write proofs of the answer by limit, JSON, which blocksim verify checks.",
-    ),
-]
-CasesOption = Annotated[
-    Path | None,
-    Option(
-        name="--cases",
-        about="File of cases (.toml): what acts in each, with partial factors; the case that "
-        "governs comes first.",
-    ),
-]
-Spatial = Annotated[
-    bool,
-    Option(
-        name="--spatial",
-        about="Ask in space: blocks of the plane are prisms, which may lean out of it.",
-    ),
-]
-AtJoint = Annotated[
-    str | None,
-    Option(
-        name="--joint",
-        metavar="A-B",
-        about="Joint whose thrust is printed, named by its two blocks; the crown if left out.",
-    ),
-]
-Json = Annotated[bool, Option(name="--json", about="Print one JSON object, nothing else.")]
+METHOD = option(f"{', '.join(CHOICES)}{OWN}.", default="auto")
+OVER = option(f"Parameter: {', '.join(FAMILIES)}; thickness, of arches, if left out.")
+WITHIN = option(
+    "Where an engine searches, instead of where limit analysis says. Other methods "
+    "search nowhere and refuse it.",
+    metavar="LOW HIGH",
+)
+SET = option(
+    f"Setting of the engine instead of its rule; repeatable: {', '.join(SETTINGS)}.",
+    name="--set",
+    metavar="NAME=VALUE",
+)
+REDUCE = option(
+    "Simulate blocks that stay together as one, and half of an arch: pymunk does, "
+    "pybullet does with arches.",
+    name="--reduce/--no-reduce",
+)
+MUST_REST = option(
+    "Find out as well whether it must rest, or friction may let it move: "
+    "a second with 8 joints, ten with 28.",
+    default=False,
+    name="--must-rest",
+)
+PROOF = option(
+    "Write proofs of the answer by limit, JSON, which blocksim verify checks.", name="--proof"
+)
+CASES = option(
+    "File of cases (.toml): what acts in each, with partial factors; the case that "
+    "governs comes first.",
+    name="--cases",
+)
+SPATIAL = option(
+    "Ask in space: blocks of the plane are prisms, which may lean out of it.",
+    default=False,
+    name="--spatial",
+)
+JOINT = option(
+    "Joint whose thrust is printed, named by its two blocks; the crown if left out.",
+    name="--joint",
+    metavar="A-B",
+)
+JSON = option("Print one JSON object, nothing else.", default=False, name="--json")
 THICKNESS = "thickness"
 """The parameter of `bracket` that is left out: of arches."""
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-from blocksim.cli.arguments import Argument
+from blocksim.cli.arguments import NEEDED, argument
 from blocksim.cli.output import say
 from blocksim.common.errors import InputError
 from blocksim.common.files import read_file, write_whole
@@ -20,7 +20,7 @@ LARGEST = 1 << 28
 
 
 def verify(
-    file: Annotated[str, Argument(about="Proof that check --proof has written.")],
+    file: str = argument("Proof that check --proof has written.", default=NEEDED),
 ) -> None:
     """Check a proof that blocks stand or fall, in rational arithmetic."""
     from blocksim.verify import checked

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
 import click
 
-from blocksim.cli.arguments import Argument, Option
-from blocksim.cli.options import Json, require_given
+from blocksim.cli.arguments import NEEDED, argument, option
+from blocksim.cli.options import JSON, require_given
 from blocksim.cli.output import answer_with, say
 from blocksim.common.checks import require
 from blocksim.common.errors import perhaps
@@ -21,14 +20,11 @@ from blocksim.suite.score import scored, worse
 
 
 def export(
-    folder: Annotated[Path, Argument(about="Folder for the scenes.", folder=True)],
-    level: Annotated[
-        list[float] | None,
-        Option(about="Only scenes so far from their limit, in %; repeatable."),
-    ] = None,
-    group: Annotated[
-        list[str] | None, Option(about="Only scenes of a group; repeatable.")
-    ] = None,
+    folder: Path = argument("Folder for the scenes.", folder=True, default=NEEDED),
+    level: list[float] | None = option(
+        "Only scenes so far from their limit, in %; repeatable."
+    ),
+    group: list[str] | None = option("Only scenes of a group; repeatable."),
 ) -> None:
     """Write scenes of which the answer is proved, for engines of any language."""
     scenes = chosen(level or (), group or ())
@@ -37,15 +33,12 @@ def export(
 
 
 def score(
-    answers: Annotated[str, Argument(about="What an engine said: a file of JSON lines.")],
-    out: Annotated[
-        Path | None, Option(about="Folder for a page, its rows and JSON.", folder=True)
-    ] = None,
-    expect: Annotated[
-        str | None,
-        Option(about="A score.json of before: exit code 1 where a level has become worse."),
-    ] = None,
-    as_json: Json = False,
+    answers: str = argument("What an engine said: a file of JSON lines.", default=NEEDED),
+    out: Path | None = option("Folder for a page, its rows and JSON.", folder=True),
+    expect: str | None = option(
+        "A score.json of before: exit code 1 where a level has become worse."
+    ),
+    as_json: bool = JSON,
 ) -> None:
     """Hold what an engine said of these scenes to the truth."""
     before = None if expect is None else read_score(expect)
@@ -64,9 +57,9 @@ def score(
 
 
 def replay(
-    answers: Annotated[str, Argument(about="What an engine said: a file of JSON lines.")],
-    scene: Annotated[str, Argument(about="A scene that it answered by poses.")],
-    out: Annotated[Path | None, Option(about="Recording to write, .npz; required.")] = None,
+    answers: str = argument("What an engine said: a file of JSON lines.", default=NEEDED),
+    scene: str = argument("A scene that it answered by poses.", default=NEEDED),
+    out: Path | None = option("Recording to write, .npz; required."),
 ) -> None:
     """Make a recording of what an engine said of a scene.
 

@@ -5,21 +5,21 @@ from __future__ import annotations
 import shlex
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import click
 
 from blocksim.ask.check import Check, check
 from blocksim.ask.options import Options
 from blocksim.cli.acting import Loading
-from blocksim.cli.arguments import Option
+from blocksim.cli.arguments import option
 from blocksim.cli.built import Given
 from blocksim.cli.options import (
+    CASES,
     EXIT_CODES,
-    CasesOption,
-    MethodOption,
-    Scene,
-    Set,
+    METHOD,
+    SCENE,
+    SET,
     named_options,
     require_given,
     settings_of,
@@ -35,18 +35,17 @@ from blocksim.report.printing import printed_page, require_browser
 def report(
     given: Given,
     loading: Loading,
-    out: Annotated[
-        Path | None,
-        Option(about="File to write: .html, .pdf (by Chromium or Chrome), .dxf; required."),
-    ] = None,
-    scene: Scene = None,
-    project: Annotated[str, Option(about="Project, for the title block.")] = "",
-    part: Annotated[str, Option(about="Part of it that this is.")] = "",
-    engineer: Annotated[str, Option(about="Who is responsible for it.")] = "",
-    date: Annotated[str, Option(about="Date of the title block; today if left out.")] = "",
-    method: MethodOption = "auto",
-    settings: Set = None,
-    cases: CasesOption = None,
+    out: Path | None = option(
+        "File to write: .html, .pdf (by Chromium or Chrome), .dxf; required."
+    ),
+    scene: str | None = SCENE,
+    project: str = option("Project, for the title block.", default=""),
+    part: str = option("Part of it that this is.", default=""),
+    engineer: str = option("Who is responsible for it.", default=""),
+    date: str = option("Date of the title block; today if left out.", default=""),
+    method: str = METHOD,
+    settings: list[str] | None = SET,
+    cases: Path | None = CASES,
 ) -> None:
     """Write a report on one structure, to print and to sign. Exit codes are those of check.
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
 
 import click
 
-from blocksim.cli.arguments import Option
+from blocksim.cli.arguments import option
 from blocksim.cli.output import progress, say
 from blocksim.cli.terminal import Table, show
 from blocksim.common.checks import Range
@@ -23,24 +22,17 @@ from blocksim.studies.questions import StructureRow
 from blocksim.studies.validate import scenarios, structures, unasked
 from blocksim.studies.validate import validate as run_validation
 
-Results = Annotated[Path, Option(about="Folder for the results.", folder=True)]
-
 
 def validate(
-    quick: Annotated[
-        bool, Option(name="--quick/--full", about="Scenarios marked quick, or all of them.")
-    ] = False,
-    out: Results = Path("out/validate"),
-    methods: Annotated[
-        str | None,
-        Option(
-            about=f"Engines, with commas: {', '.join(NAMES)}, or your own as module:ENGINE; "
-            "those usual if left out."
-        ),
-    ] = None,
-    workers: Annotated[
-        int, Option(range=Range(low=1, high=64, whole=True), about="Processes.")
-    ] = 2,
+    quick: bool = option(
+        "Scenarios marked quick, or all of them.", default=False, name="--quick/--full"
+    ),
+    out: Path = option("Folder for the results.", default=Path("out/validate"), folder=True),
+    methods: str | None = option(
+        f"Engines, with commas: {', '.join(NAMES)}, or your own as module:ENGINE; "
+        "those usual if left out."
+    ),
+    workers: int = option("Processes.", default=2, range=Range(low=1, high=64, whole=True)),
 ) -> None:
     """Simulate published arches and structures; compare with the map and their sources.
 
@@ -70,13 +62,9 @@ def validate(
 
 
 def chart(
-    quick: Annotated[
-        bool, Option(name="--quick/--full", about="Two small arches, or five.")
-    ] = False,
-    out: Results = Path("out/chart"),
-    beside: Annotated[
-        Path | None, Option(about="Points of another program: JSON like chart.json.")
-    ] = None,
+    quick: bool = option("Two small arches, or five.", default=False, name="--quick/--full"),
+    out: Path = option("Folder for the results.", default=Path("out/chart"), folder=True),
+    beside: Path | None = option("Points of another program: JSON like chart.json."),
 ) -> None:
     """Chart the error of every method, from coarse to fine, against time and work."""
     from blocksim.report.chart import read_points, write_chart

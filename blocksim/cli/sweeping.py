@@ -5,10 +5,9 @@ from __future__ import annotations
 from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
 
-from blocksim.cli.arguments import Argument, Option
-from blocksim.cli.options import Json, require_given
+from blocksim.cli.arguments import argument, option
+from blocksim.cli.options import JSON, require_given
 from blocksim.cli.output import answer_with, progress
 from blocksim.common.checks import Range
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
@@ -19,28 +18,17 @@ from blocksim.sweeps.table import require_parquet, write_csv
 
 
 def sweep(
-    design: Annotated[
-        Path | None, Argument(about="Which arches to ask about: a .toml file; required.")
-    ] = None,
-    out: Annotated[
-        Path | None,
-        Option(
-            about="Folder for the rows; one that has some is resumed; required.", folder=True
-        ),
-    ] = None,
-    workers: Annotated[
-        int, Option(range=Range(low=1, high=256, whole=True), about="Processes.")
-    ] = 2,
-    scheduler: Annotated[
-        str | None, Option(about="Address of a dask scheduler, instead of processes.")
-    ] = None,
-    parquet: Annotated[
-        bool, Option(name="--parquet", about="Write all rows as a table, too: rows.parquet.")
-    ] = False,
-    csv: Annotated[
-        bool, Option(name="--csv", about="Write all rows as CSV, too: rows.csv.")
-    ] = False,
-    as_json: Json = False,
+    design: Path | None = argument("Which arches to ask about: a .toml file; required."),
+    out: Path | None = option(
+        "Folder for the rows; one that has some is resumed; required.", folder=True
+    ),
+    workers: int = option("Processes.", default=2, range=Range(low=1, high=256, whole=True)),
+    scheduler: str | None = option("Address of a dask scheduler, instead of processes."),
+    parquet: bool = option(
+        "Write all rows as a table, too: rows.parquet.", default=False, name="--parquet"
+    ),
+    csv: bool = option("Write all rows as CSV, too: rows.csv.", default=False, name="--csv"),
+    as_json: bool = JSON,
 ) -> None:
     """Ask about many arches. A run that was killed goes on where it was."""
     if design is None:
