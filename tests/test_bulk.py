@@ -22,7 +22,7 @@ from blocksim.ask.bulk import Structure
 from blocksim.blocks.road import with_soil
 from blocksim.blocks.soil import Soil
 from blocksim.cli.app import app
-from blocksim.limit.determinate import margin_of_stack, margin_of_tower
+from blocksim.limit.determinate import margin_of_tower, statics_of_stack
 from blocksim.limit.space import can_rest
 from blocksim.suite.export import questions
 from blocksim.suite.families import Question
@@ -73,24 +73,26 @@ def test_margin_of_a_stack_is_that_of_the_programme(
     ]
     loads = [{"body": [0, -1]}, {"block": 0, "force": [push * 1e4, 0]}]
     problem = blocksim.structure_of(stack(widths, shifts, mu, dead=loads)).tilted(tilt)
-    found, asked = margin_of_stack(problem), equilibrium(problem)
+    found, asked = statics_of_stack(problem), equilibrium(problem)
     if math.isinf(asked.margin):
-        assert found < -900
+        assert found.margin < -900
     else:
-        assert found == pytest.approx(asked.margin, abs=1e-8, rel=1e-7)
+        assert found.margin == pytest.approx(asked.margin, abs=1e-8, rel=1e-7)
 
 
 def test_margins_in_closed_form() -> None:
     # Both ends of a box's face press by half the weight, along two edges of friction each; the
     # unit is twice the weight.
-    assert margin_of_stack(blocksim.structure_of(stack([1], [0]))) == pytest.approx(1 / 8)
+    assert statics_of_stack(blocksim.structure_of(stack([1], [0]))).margin == pytest.approx(
+        1 / 8
+    )
     # On a slope friction is used by tan(tilt)/mu of it, up to where it slides.
     for slope in (0.1, 0.3, 0.59, 0.61, 0.9):
         low = blocksim.structure_of(stack([1], [0])).tilted(math.atan(slope))
         share = (1 - slope / 0.6) / 2 * math.cos(math.atan(slope)) / 4
         # The centre is a quarter of the width high: it turns at a slope of 2.
         lifts = (1 - slope / 2) / 2 * math.cos(math.atan(slope)) / 4
-        assert margin_of_stack(low) == pytest.approx(min(share, lifts))
+        assert statics_of_stack(low).margin == pytest.approx(min(share, lifts))
     # A cube each of whose corners presses by its share; on the rim by none.
     ground = Solid(parts=(box((-3, -3, -1), (3, 3, 0)),), fixed=True)
     cube = Solid(parts=(box((0, 0, 0), (1, 1, 1)),))
@@ -121,7 +123,7 @@ def test_what_is_no_tower_is_left_to_the_programme() -> None:
     wall = blocksim.Wall(
         length=3, courses=3, block_length=1, block_height=0.5, friction=0.6
     ).problem()
-    assert margin_of_stack(wall) is None
+    assert statics_of_stack(wall) is None
 
 
 def test_stacks_that_crush_or_lean_on_soil_are_answered_as_by_check() -> None:
@@ -165,6 +167,8 @@ def test_the_same_as_the_ordinary_check() -> None:
     for table, told in zip(made, check_many(made, workers=1), strict=True):
         usual = blocksim.check(blocksim.structure_of(table), method="limit")
         assert told.verdict == usual.verdict.value
+        assert told.proved
+        assert usual.proved
         assert told.margin == pytest.approx(usual.static.margin, abs=1e-9)
 
 
@@ -199,6 +203,7 @@ def test_a_stream_and_a_folder_are_answered_by_line_and_by_file(tmp_path: Path) 
     told = [json.loads(line) for line in done.stdout.splitlines()]
     assert [each["file"] for each in told] == ["a.json", "b.json"]
     assert told[0]["margin"] > 0
+    assert told[0]["proved"] is True
     assert "error" in told[1]
     # A coefficient is for those without one; what is for one structure is refused.
     del fine["friction"]

@@ -1,8 +1,8 @@
 """Many structures, asked one after the other whether they stand, on all processors.
 
-For who filters or labels scenes that a program made. What is asked is limit analysis; of stacks
-and towers the margin follows from statics alone (`limit.determinate`), and where it is near 0
-the ordinary check decides, with its proof.
+For who filters or labels scenes that a program made. What is asked is limit analysis. Forces of
+a stack that stands and margins of towers follow from statics alone (`limit.determinate`); else,
+and near 0, the ordinary check decides. Answers in the plane are proved.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, Future
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from queue import Empty, Queue
@@ -27,15 +27,14 @@ from blocksim.common.processes import Hands
 from blocksim.kinds.changes import with_friction
 from blocksim.kinds.files import load_structure, structure_of, written
 from blocksim.kinds.offers import offers_of
-from blocksim.limit.determinate import margin_of_stack, margin_of_tower
-from blocksim.simulation.verdict import Verdict
+from blocksim.limit.determinate import margin_of_tower, statics_of_stack
+from blocksim.limit.exact import Exact
+from blocksim.limit.proof import proof_of_rest
 
 Structure = str | bytes | Path | Mapping[str, object] | Problem[Any]
 """A line of JSON, a file, what such a file says, or a problem."""
 NEAR = 1e-6
 """Margin up to which the ordinary check decides."""
-FARTHEST = 100.0
-"""Lack of force beyond which it does, too: it may be beyond all bounds."""
 ALONE = 40
 """Structures that are answered before processes are started."""
 BATCH = 32
@@ -59,6 +58,8 @@ class Told:
         of a force along an edge of a cone of friction, over what its joint carries, about;
         in space how hard each corner of each face presses, over the share of the lighter
         block's weight. At most 1; -inf where no forces would do. None of kinds without one.
+    proved : bool
+        Whether the verdict is proved in rational numbers, as of `check`: never in space.
     title : str
         What the structure is called.
     error : str or None
@@ -67,6 +68,7 @@ class Told:
 
     verdict: Literal["stands", "collapses", "undecided"] | None = None
     margin: float | None = None
+    proved: bool = False
     title: str = ""
     error: str | None = None
 
@@ -225,12 +227,11 @@ def _told(structure: Structure, friction: float | None) -> Told:
     """Answer one structure; what is wrong with it is its answer."""
     try:
         problem = _read(structure, friction)
-        verdict, margin = _verdict(problem)
+        return replace(_answer(problem), title=problem.title)
     except BlocksimError as error:
         return Told(error=str(error))
     except (ValueError, RecursionError, MemoryError) as error:
         return Told(error=in_line(" ".join(str(error).split()) or type(error).__name__))
-    return Told(verdict=verdict.value, margin=margin, title=problem.title)
 
 
 def _read(structure: Structure, friction: float | None) -> Problem[Any]:
@@ -255,15 +256,19 @@ def _read(structure: Structure, friction: float | None) -> Problem[Any]:
     return structure_of(said if friction is None else with_friction(said, friction))
 
 
-def _verdict(problem: Problem[Any]) -> tuple[Verdict, float | None]:
-    """Return verdict and margin, by statics alone where that tells them apart from 0."""
-    margin = None
+def _answer(problem: Problem[Any]) -> Told:
+    """Tell what statics alone shows to be so, else what the ordinary check does."""
     if problem.in_space:
         margin = margin_of_tower(problem)
+        if margin is not None and abs(margin) > NEAR:
+            return Told(verdict="stands" if margin > 0 else "collapses", margin=margin)
     elif problem.has_statics and problem.strength is None and offers_of(problem) is None:
-        margin = margin_of_stack(problem)
-    if margin is not None and NEAR < abs(margin) < FARTHEST:
-        return Verdict.STANDS if margin > 0 else Verdict.COLLAPSES, margin
+        stack = statics_of_stack(problem)
+        if stack is not None and stack.margin > NEAR:
+            proof = proof_of_rest(Exact(problem), stack.forces)
+            if proof is not None:
+                return Told(verdict="stands", margin=stack.margin, proved=True)
     answer = check(problem, method="limit")
     margin = math.nan if answer.static is None else answer.static.margin
-    return answer.verdict, None if math.isnan(margin) else margin
+    known = None if math.isnan(margin) else margin
+    return Told(verdict=answer.verdict.value, margin=known, proved=answer.proved)

@@ -69,15 +69,11 @@ class Body:
             mass * measured.polar / measured.area if self.inertia is None else self.inertia
         )
         require(0 < inertia < np.inf, f"{field}.inertia", inertia, "above 0")
-        centre = (
-            measured.centroid if self.centre is None else np.array(self.centre, dtype=float)
-        )
-        require(
-            centre.shape == (2,) and bool(np.isfinite(centre).all()),
-            f"{field}.centre",
-            self.centre,
-            "two finite numbers",
-        )
+        centre = measured.centroid
+        if self.centre is not None:
+            centre = np.array(self.centre, dtype=float)
+            finite = centre.shape == (2,) and bool(np.isfinite(centre).all())
+            require(finite, f"{field}.centre", self.centre, "two finite numbers")
         return {
             "centre": centre,
             "mass": mass,

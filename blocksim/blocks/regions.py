@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.outlines import is_convex, joined
-from blocksim.blocks.touching import Faces, Slack
+from blocksim.blocks.touching import Faces, Index, Slack
 from blocksim.common.checks import require
 
 MOST_NEAR = 100
@@ -94,26 +94,44 @@ def overlaps(
 
 
 def near_faces(faces: Faces, fixed: NDArray[np.bool_], slack: Slack) -> NDArray[np.int64]:
-    """Find pairs of faces of different bodies, not both fixed, within `slack.near`.
+    """Find pairs of faces of different bodies, not both fixed, that may be within `slack.near`.
+
+    Pairs that are farther apart are left out where a line along one of them tells.
 
     Returns (pairs, 2): Each pair once.
     """
-    lines: Any = shapely.linestrings(np.stack([faces.start, faces.end], axis=1))
-    tree, pairs = shapely.STRtree(lines), list[NDArray[np.int64]]()
+    along = faces.along
+    low, high = np.minimum(faces.start, faces.end), np.maximum(faces.start, faces.end)
+    box: Any = shapely.box
+    tree, pairs = shapely.STRtree(box(*low.T, *high.T)), list[NDArray[np.int64]]()
     reach = slack.near[faces.body]
     reach = np.where(np.isfinite(reach), reach, reach[np.isfinite(reach)].max(initial=0.0))
     # What is fixed looks for nothing: all it touches looks for it.
     looking = np.flatnonzero(~fixed[faces.body])
-    count, allowed = 0, MOST_NEAR * (len(lines) + MOST_NEAR)
+    count, allowed = 0, MOST_NEAR * (len(low) + MOST_NEAR)
     begin, step = 0, FIRST_LOOK
     while begin < len(looking):
         here = looking[begin : begin + step]
-        at, other = tree.query(lines[here], predicate="dwithin", distance=reach[here])
+        way = reach[here, None]
+        at, other = tree.query(box(*(low[here] - way).T, *(high[here] + way).T))
         one = here[at]
         a, b = faces.body[one], faces.body[other]
         real = (a != b) & (fixed[b] | (one < other))
+        one, other = one[real], other[real]
+        real = _beside(faces, along, one, other, reach[one])
+        real &= _beside(faces, along, other, one, reach[one])
         pairs.append(np.stack([one[real], other[real]], axis=1).astype(np.int64))
         count += len(pairs[-1])
         require(count <= allowed, "blocks", f"{count} pairs of faces", "apart from each other")
         begin, step = begin + step, min(4 * step, LONGEST_LOOK)
     return np.concatenate(pairs)
+
+
+def _beside(
+    faces: Faces, along: Array, one: Index, other: Index, reach: Array
+) -> NDArray[np.bool_]:
+    """Tell which other faces come within reach of the lines along faces."""
+    (x, y), (u, v) = faces.start[one].T, along[one].T
+    begin, end = (u * (at[:, 1] - y) - v * (at[:, 0] - x)
+                  for at in (faces.start[other], faces.end[other]))  # fmt: skip
+    return (np.minimum(begin, end) <= reach) & (np.maximum(begin, end) >= -reach)

@@ -52,7 +52,8 @@ def check_each(
         told = check_batches(batches, friction=friction)
     for name, each in zip(names, told, strict=False):
         title = {"title": each.title} if each.title else {}
-        answer = {**title, "verdict": each.verdict, "margin": each.margin}
+        found = {"verdict": each.verdict, "proved": each.proved, "margin": each.margin}
+        answer = {**title, **found}
         click.echo(json_text({**name, **({"error": each.error} if each.error else answer)}))
     raise click.exceptions.Exit(0)
 

@@ -1,4 +1,4 @@
-"""Stacks and towers: what joints carry there by statics alone, and so their margin, exactly.
+"""Stacks and towers: what joints carry there by statics alone, and so their margin.
 
 Where each block reaches the ground through one joint only, as in a stack, a joint carries all
 that is above it, whatever friction may do elsewhere: force and moment follow from equilibrium.
@@ -8,6 +8,8 @@ other assemblies need.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,8 +28,15 @@ RUBS = 1e-13
 """Force across, over that along the normal, up to which it is rounding."""
 
 
-def margin_of_stack(problem: Problem) -> float | None:
-    """Return the margin of `equilibrium`, of a stack.
+class Stacked(NamedTuple):
+    """Margin and forces of a stack, as of `Equilibrium`."""
+
+    margin: float
+    forces: Array
+
+
+def statics_of_stack(problem: Problem) -> Stacked | None:
+    """Return what `equilibrium` says of a stack.
 
     Returns: None where blocks reach the ground in more ways than one, where a corner rests on a
         face, where friction is 0 or has no bound, or where soil bears what moves into it.
@@ -35,7 +44,8 @@ def margin_of_stack(problem: Problem) -> float | None:
     Examples
     --------
     >>> from blocksim.kinds.column import Column
-    >>> margin_of_stack(Column(drums=3, drum_height=1, width=1, friction=0.5).problem())
+    >>> column = Column(drums=3, drum_height=1, width=1, friction=0.5).problem()
+    >>> statics_of_stack(column).margin
     0.125
     """
     assembly, mu = problem.assembly, problem.friction
@@ -59,7 +69,11 @@ def margin_of_stack(problem: Problem) -> float | None:
     # that both ends have as much to spare, if both press by that much.
     spare = np.minimum(np.minimum(along - second, second), (along - np.abs(across) / mu) / 2)
     unit = joint_weights(problem, carried_weights(problem))
-    return min(MOST, float((spare * np.maximum(1.0, mu) / (2 * unit)).min()))
+    margin = min(MOST, float((spare * np.maximum(1.0, mu) / (2 * unit)).min()))
+    pressing = np.stack([along - second, second], axis=1)
+    # Each end bears its share of the force across.
+    rubbing = pressing * (across / np.where(along == 0.0, 1.0, along))[:, None]
+    return Stacked(margin, np.stack([pressing, rubbing], axis=2))
 
 
 def margin_of_tower(problem: Problem[SpatialAssembly]) -> float | None:

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from blocksim.blocks.acting import Load
 from blocksim.blocks.assembly import PLANAR, Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
-from blocksim.engines.base import Engine, TakesVelocities, trusted
+from blocksim.engines.base import Engine, TakesForces, TakesVelocities, World, trusted
 from blocksim.engines.contact.geometry import Geometry, turns_of
 from blocksim.limit import equilibrium
 from blocksim.simulation.motion import FRAME, distrust, lie_still
@@ -136,14 +136,39 @@ def may_rest(problem: Problem) -> bool:
     They do if they exist at both ends of its acceleration: each mean of two such sets of forces
     lies within friction, too, and balances what lies between.
     """
-    still, blocks = replace(problem, shaking=None), tuple(range(len(problem.assembly.blocks)))
+    shaking = problem.shaking
+    if shaking is None or not _is_known(problem):
+        return False
+    return all(equilibrium(_pushed(problem, each)).exists for each in shaking.across)
+
+
+def _is_known(problem: Problem) -> bool:
+    """Tell whether limit analysis can be asked for forces while the ground shakes."""
     shaking = problem.shaking
     known = shaking is not None and not shaking.is_vertical and not len(problem.velocities)
-    if shaking is None or not known or not still.has_statics:
-        return False
-    pushes = (np.array([-each, 0.0]) for each in shaking.across)
-    loads = (Load(force=push, blocks=blocks, per_weight=True) for push in pushes)
-    return all(equilibrium(replace(still, dead=(*still.dead, load))).exists for load in loads)
+    return known and replace(problem, shaking=None).has_statics
+
+
+def _pushed(problem: Problem, across: float) -> Problem:
+    """Return a problem at a moment at which its ground accelerates by so much across [g]."""
+    blocks = tuple(range(len(problem.assembly.blocks)))
+    load = Load(force=np.array([-across, 0.0]), blocks=blocks, per_weight=True)
+    return replace(problem, shaking=None, dead=(*problem.dead, load))
+
+
+def _begin(world: World, simulation: Simulation[Any]) -> None:
+    """Give a world forces that balance the ground's first push, where it takes any.
+
+    Friction may allow both rest and motion, and sweeps that begin with the forces of before
+    the push may find the motion.
+    """
+    problem, step = simulation.taken, simulation.settings.step
+    if not simulation.engine.takes_forces or not _is_known(problem):
+        return
+    across = float((problem.gravity - problem.shaken(0.0, step))[0])
+    forces = equilibrium(_pushed(problem, across)).forces
+    if forces is not None:
+        cast("TakesForces", world).begin(forces)
 
 
 def _once(
@@ -160,6 +185,7 @@ def _once(
     held = hold(problem, engine, settings=settings, progress=progress)
     simulation, world = held.simulation, held.world
     assembly, step = simulation.assembly, simulation.settings.step
+    _begin(world, simulation)
     shaken = problem.shaking.duration / problem.seconds if problem.shaking else 0.0
     if problem.is_moving and len(problem.velocities):
         per = np.array([assembly.size, assembly.size, 1.0])

@@ -45,6 +45,8 @@ PASSED = 1e-9
 """Overlap at the end of a step by which what was open has closed [size]."""
 DEEP = 1e-6
 """Overlap that is pushed apart at once [size]."""
+PUSHES = 6
+"""Most looks at what overlaps, with a push after each but the last."""
 SAME = 1e-6
 """Distance of points that are the same [size]."""
 MOST = 5e-4
@@ -291,21 +293,30 @@ class SolidBlocks:
         return -float(self._gaps(points, self._place, self._place).min(initial=0.0))
 
     def _push_apart(self) -> None:
-        """Move blocks that overlap apart, as little as contact allows."""
-        points, friction = self._points(self._place, 0.0)
-        seen = self._seen(points, self._place, self._place)
-        deep = -float(seen.gaps.min(initial=0.0))
-        if deep > DEEP:
+        """Move blocks that overlap apart, as little as contact allows.
+
+        Again where that pushed them into others; the place with the least overlap is kept.
+        """
+        least, place = math.inf, self._place
+        for _ in range(PUSHES):
+            points, friction = self._points(self._place, 0.0)
+            seen = self._seen(points, self._place, self._place)
+            deep = -float(seen.gaps.min(initial=0.0))
+            if deep < least:
+                least, place = deep, self._place
+            if deep <= DEEP:
+                break
             drift = np.zeros((len(seen.gaps), 3))
             drift[:, 0] = seen.gaps / deep
             still = np.zeros_like(self._velocities)
             asked = self.bodies.asked(seen.rows, seen.sides, drift, still, friction)
             forces = dilating(asked)
-            if forces is not None:
-                way = deep * asked.pushed_by(forces).reshape(-1, 6) / self.bodies.root
-                self._place = self._place.moved(way)
-                deep = self._overlap()
-        self._penetration = max(self._penetration, deep)
+            if forces is None:
+                break
+            way = deep * asked.pushed_by(forces).reshape(-1, 6) / self.bodies.root
+            self._place = self._place.moved(way)
+        self._place = place
+        self._penetration = max(self._penetration, least)
 
 
 def at_rest(bodies: Bodies) -> Step:
