@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from inspect import Parameter, signature
-from pathlib import Path
-from typing import Annotated, ParamSpec, TypeVar
+from inspect import signature
+from typing import ParamSpec, TypeVar
 
 import click
 
-from blocksim.cli.arguments import Argument, Option, command_of
+from blocksim.cli.arguments import NEEDED, argument, command_of, option
 
 Asked = ParamSpec("Asked")
 Found = TypeVar("Found")
@@ -24,7 +23,11 @@ def run(main: Callable[Asked, Found], show: Callable[[Found], object] = str) -> 
     def command(*args: Asked.args, **options: Asked.kwargs) -> None:
         click.echo(show(main(*args, **options)))
 
-    needed = signature(main).parameters["out"].default is Parameter.empty
-    folder = Argument(about=ABOUT, folder=True) if needed else Option(about=ABOUT, folder=True)
-    command.__annotations__ = {**main.__annotations__, "out": Annotated[Path, folder]}
+    known = signature(main)
+    out = known.parameters["out"]
+    folder = (argument if out.default is NEEDED else option)(
+        ABOUT, default=out.default, folder=True
+    )
+    given = [*({**known.parameters, "out": out.replace(default=folder)}).values()]
+    command.__signature__ = known.replace(parameters=given)  # type: ignore[attr-defined]
     command_of(command).main()

@@ -14,7 +14,7 @@ import io
 import json
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -22,7 +22,6 @@ from matplotlib.figure import Figure
 
 from analysis.command import run
 from analysis.rows import write_rows
-from blocksim.cli.arguments import Option
 from blocksim.common.files import make_folder
 from blocksim.suite.answers import Head, read_answers
 from blocksim.suite.export import groups, questions
@@ -132,7 +131,7 @@ def _level(score: Score, group: str) -> float:
 def main(
     out: Path,
     *,
-    answers: Annotated[Path | None, Option(about="Folder of answers.", folder=True)] = None,
+    answers: Path | None = None,
     quick: bool = False,  # noqa: ARG001 - all studies take it
 ) -> list[dict[str, Any]]:
     """Score answers, or read what is kept, and draw."""

@@ -149,6 +149,7 @@ def command_of(function: Callable[..., None], name: str | None = None) -> Comman
 
     `function`: The default of each parameter is an `option` or an `argument`, or its type is a
         dataclass of such. Of these it gets one, whose fields are options below its `heading`.
+        Any other default is that of an option of which nothing is said.
     `name`: Of the command.
     """
     groups: dict[str, type[Any]] = {}
@@ -164,7 +165,10 @@ def command_of(function: Callable[..., None], name: str | None = None) -> Comman
                 parameters.append(_parameter(one.name, own[one.name], one))
                 headings[one.name] = getattr(hint, "heading", "Options")
         else:
-            parameters.append(_parameter(each.name, hint, each.default))
+            said: Any = each.default
+            if not hasattr(said, "metadata"):
+                said = (argument if said is NEEDED else option)("", default=said)
+            parameters.append(_parameter(each.name, hint, said))
 
     def called(**given: Any) -> None:
         given = {key: _listed(value) for key, value in given.items()}
