@@ -35,7 +35,7 @@ TOGETHER = {
         style.INK,
         "#ffffff",
     ],
-    "verdicts": list(style.VERDICTS.values()),
+    "verdicts, and what is wrong": [*style.VERDICTS.values(), style.MISS],
 }
 ARROWS = {"live"}
 """Drawn as arrows, with heads."""

@@ -350,20 +350,24 @@ def file(tmp_path: Path) -> Path:
 def test_supports_that_move_are_recorded_until_all_has_fallen(
     file: Path, tmp_path: Path
 ) -> None:
-    """The supports go on apart, evenly; the arch falls near the way known for it."""
+    """The supports go apart evenly, until it falls near the way known; then all comes to rest."""
     out = tmp_path / "run.npz"
     done = blocksim("simulate", str(file), "--over", "spread", "--out", str(out))
     assert done.returncode == 0, done.stderr
     recording = load_recording(out)
-    assert recording.problem.title == "circular-arch, its supports move"
+    assert recording.problem.title == "circular-arch"
     assert recording.poses.shape[1] == 8 + 2
     apart = recording.poses[:, 9, 0] - recording.poses[:, 8, 0]
     size = recording.assembly.size
     assert apart[-1] > apart[0]
-    assert np.diff(apart) == pytest.approx(apart[1] - apart[0], rel=1e-6)
+    goes = np.diff(apart)
+    going = goes > goes[0] / 2
+    assert goes[going] == pytest.approx(goes[0], rel=1e-6)
+    assert not goes[np.argmin(going) :].any()
+    assert np.abs(recording.poses[-40:] - recording.poses[-1]).max() < 2e-3
     crown = recording.poses[:, 3, 1]
     moved = (apart - apart[0]) * size
     falls = moved[int(np.argmax(crown < crown[0] - 0.3))]
     known = Spreading(structure_of(json.loads(file.read_text()))).exact
-    # It takes a while to fall, in which the supports go on.
+    # It takes a while until it is seen to fall, in which the supports go on.
     assert known < falls < known + 0.01 * 3

@@ -22,7 +22,7 @@ from blocksim.engines.stepping import UNSOLVED
 from blocksim.kinds.circular import CircularArch
 from blocksim.limit.bearing import bears
 from blocksim.limit.spreading import Path, displaced_at, follow
-from blocksim.simulation.motion import FRAME
+from blocksim.simulation.motion import FRAME, lie_still
 from blocksim.simulation.recording import Recording
 
 SIDES = (-1.0, 1.0)
@@ -31,9 +31,9 @@ FARTHEST = 1.0
 """How far supports move at most [size]."""
 SPEED, STEP = 1e-3, 0.05
 """Of the supports [size/sqrt(size/g)], and step of time [sqrt(size/g)], at first."""
-SEEN, AFTER = 0.01, 6.0
-"""Speed of the supports in a recording [size/sqrt(size/g)], and how long it goes on once the
-blocks fall [sqrt(size/g)]."""
+SEEN, AFTER = 0.01, 20.0
+"""Speed of the supports in a recording [size/sqrt(size/g)], and how long it goes on at most
+once the blocks fall [sqrt(size/g)]."""
 SHALLOW = 0.5
 """How far below the structure a recording shows the ground, if no support sinks [size]."""
 SIDEWAYS = 0.5
@@ -204,7 +204,9 @@ class Spreading:
         return Slow(low=low, high=high, solved=whole, runs=runs)
 
     def recorded(self, progress: Progress = silent) -> Recording:
-        """Move the supports by `direct`, faster than `slowly`, until the blocks have fallen.
+        """Move the supports by `direct`, faster than `slowly`, until the blocks fall.
+
+        There they stop. The recording goes on until what has fallen lies still.
 
         Returns: Of the blocks and, after them, the supports that move.
         """
@@ -213,19 +215,22 @@ class Spreading:
         deep = SHALLOW if level else DEEP
         world = OnMovingSupports(self.problem, settings, SEEN, deep)
         stride = round(FRAME / settings.step)
-        times, poses, left = [0.0], [world.poses()], AFTER
-        while world.value < self.farthest and left > 0 and solved(world):
+        times, poses, fell = [0.0], [world.poses()], math.inf
+        while world.value < self.farthest and times[-1] < fell + AFTER and solved(world):
             for _ in range(stride):
                 world.advance_once()
             times.append(times[-1] + stride * settings.step)
             poses.append(world.poses())
-            left -= FRAME * (world.fastest > FAST * SEEN or left < AFTER)
+            if world.fastest > FAST * SEEN and fell == math.inf:
+                fell = times[-1]
+                world.stop()
+            if fell < times[-1] and lie_still(world.problem.assembly, poses):
+                break
             progress(world.value / self.farthest, f"supports at {world.value:.4g} m")
         return Recording(
             # Supports that move are its last blocks; it says so by their moves.
             problem=replace(
                 world.problem,
-                title=f"{self.asked.title or 'structure'}, its supports move",
                 moves=tuple(
                     replace(move, support=len(world.problem.assembly.supports) - 1)
                     for move in self.problem.moves

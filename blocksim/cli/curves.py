@@ -39,6 +39,7 @@ def write_curves(problem: Problem, over: str, out: Sequence[Path], *, silent: bo
     """Write tables and pictures of what is borne as it moves."""
     from blocksim.view.curvefigure import Line, curve_figure
     from blocksim.view.sheet import title_of
+    from blocksim.view.style import THRUST
 
     title = title_of(problem)
     if over == "push":
@@ -64,8 +65,9 @@ def write_curves(problem: Problem, over: str, out: Sequence[Path], *, silent: bo
             for value, *ends in points
         ]
         words = f"{title}: thrust at the crown as the supports move apart, until it falls"
+        way = [each[0] for each in points]
         lines = [
-            Line(name, [each[0] for each in points], [each[place] / 1e3 for each in points])
+            Line(name, way, [each[place] / 1e3 for each in points], THRUST)
             for name, place in (("least thrust", 1), ("greatest thrust", 2))
         ]
         axes = "way of the supports [m]", "thrust [kN]"

@@ -23,6 +23,7 @@ from blocksim.cli.subject import anything_asked
 from blocksim.common.checks import Range, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import write_whole
+from blocksim.common.progress import Progress
 from blocksim.common.words import counted
 from blocksim.engines import NAMES
 from blocksim.kinds.loading import load_recording
@@ -101,9 +102,16 @@ def recordings(
         refuse({"must_rest": must_rest and problem.in_space})
         return [_along_motion(problem, method), *second]
     with named_options(), progress() as report:
-        until = FALL if problem.shaking is None else None
-        run = simulate(problem, method=method or "auto", duration=until, progress=report)
-    return [run, *second]
+        return [_run(problem, method or "auto", report), *second]
+
+
+def _run(problem: Problem, method: str, progress: Progress) -> Recording:
+    """Record until what falls lies still, what stands until that is certain."""
+    if problem.is_moving:
+        return simulate(problem, method=method, progress=progress)
+    held = hold(problem, choose(method, problem=problem, moving=True).name, progress=progress)
+    rests = held.onset.verdict is Verdict.STANDS
+    return held.record(None if rests else FALL, progress)
 
 
 def _along_motion(problem: Problem, method: str | None) -> Recording:
@@ -129,6 +137,10 @@ def film(out: Path, shown: Sequence[Recording[Any]], at: float | None, **options
         later = f": {asked:g} is after the end, so it shows the end, {end}"
         say(f"wrote {out}{later if end else ''}")
         return
+    if not any(made.moves):
+        say(
+            f"wrote {out}: a film of {made.count / made.rate:.1f} s, in which nothing is seen to move"
+        )
     why = ", until a block reaches the ground or a footing" if made.on_ground else ""
     radius = "" if made.metric else " (if r = 1 m)"
     length = made.count / made.rate

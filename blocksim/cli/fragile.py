@@ -21,6 +21,7 @@ from blocksim.cli.output import answer_with, picture_kind, progress, write_files
 from blocksim.cli.subject import problem_asked
 from blocksim.common.checks import require
 from blocksim.common.sheets import write_sheet
+from blocksim.common.words import counted
 from blocksim.report.problems import problem_record
 from blocksim.simulation.verdict import Verdict
 
@@ -69,14 +70,18 @@ def fragility(
     shares = [found.share(each).tolist() for each in (Verdict.COLLAPSES, Verdict.UNDECIDED)]
     rows = list(zip(found.amplitudes.tolist(), *shares, strict=True))
     headings = ["amplitude_g", "falls", "undecided"]
-    words = (f"{each[0]:11.4g}  {each[1]:5.0%}  {each[2]:9.0%}" for each in rows)
+    words = (f"{each[0]:13.4g}  {each[1]:5.0%}  {each[2]:9.0%}" for each in rows)
     answer_with(
         lambda: {
             "problem": problem_record(problem),
             "rows": [dict(zip(headings, row, strict=True)) for row in rows],
             "verdicts": dict(zip(found.records, found.verdicts, strict=True)),
         },
-        lambda: ["  ".join(headings), *words],
+        lambda: [
+            f"Share of {counted(len(names), 'record')} that brings it down, by amplitude:",
+            "amplitude [g]  falls  undecided",
+            *words,
+        ],
         as_json=as_json,
     )
     tables = {"csv": partial(write_sheet, names=headings, rows=rows)}
@@ -95,12 +100,14 @@ def _figure(
 ) -> Figure:
     from blocksim.view.curvefigure import Line, curve_figure
     from blocksim.view.sheet import title_of
+    from blocksim.view.style import VERDICTS
 
     across, falling, unknown = (list(each) for each in zip(*rows, strict=True))
-    lines = [Line("falls", across, falling)]
+    lines = [Line("falls", across, falling, VERDICTS[Verdict.COLLAPSES])]
     if any(unknown):
         both = [falls + open for falls, open in zip(falling, unknown, strict=True)]
-        lines.append(Line("falls, or undecided", across, both))
+        tone = VERDICTS[Verdict.UNDECIDED]
+        lines.append(Line("falls, or undecided", across, both, tone))
     title = f"{title_of(problem)}: share of {records} records that brings it down"
     figure = curve_figure(title, "amplitude of the record [g]", "share", lines)
     figure.axes[0].set_ylim(0, 1.02)

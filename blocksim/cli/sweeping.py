@@ -66,17 +66,18 @@ def summary_record(done: Summary) -> dict[str, object]:
 def summary_lines(done: Summary, out: Path) -> list[str]:
     """Return a summary in words."""
     tally = done.tally
-    lines = [f"{done.cases} cases: {done.found} were there, {tally.rows} rows added to {out}"]
+    before = f"; {done.found} were there before" if done.found else ""
+    lines = [f"{out} has a row for each of {done.cases} cases{before}"]
     if tally.rows:
-        lines.append(
-            f"  took      {done.wall_s:.3g} s, {tally.rows / done.wall_s:.3g} a second"
-        )
+        pace = tally.rows / done.wall_s
+        lines.append(f"  new     {tally.rows}, in {done.wall_s:.3g} s ({pace:.3g} a second)")
     if tally.simulated:
         mean = tally.simulated_s / tally.simulated
-        lines.append(f"  simulated {tally.simulated}, {mean:.2g} s each")
+        lines.append(f"  moved   {tally.simulated} were simulated, in {mean:.2g} s each")
     if tally.spared:
-        saved = "" if done.saved_s is None else f": about {done.saved_s:.3g} s saved"
-        lines.append(f"  settled   {tally.spared} by limit analysis instead{saved}")
+        saved = "" if done.saved_s is None else f", which saved about {done.saved_s:.3g} s"
+        lines.append(f"  exact   {tally.spared} were answered by limit analysis{saved}")
+        lines.append("          (they are too far from their limit to be worth simulating)")
     if tally.failed:
-        lines.append(f"  failed    {tally.failed}: see error in their rows")
+        lines.append(f"  failed  {tally.failed} could not be answered: their rows say why")
     return lines

@@ -81,9 +81,13 @@ class OnMovingSupports(Blocks):
         """Largest velocity of a block [size/sqrt(size/g)], or its rotation."""
         return float(np.abs(self._velocities[: self._count]).max())
 
+    def stop(self) -> None:
+        """Let the supports stay where they are from here on."""
+        self._speed = 0.0
+
     def starts(self) -> float:
         """Stop the supports, and say with what acceleration the blocks start from rest [g]."""
-        self._speed = 0.0
+        self.stop()
         self._velocities = np.zeros_like(self._velocities)
         self._pull()
         touch = self._touch(self._poses, self._step)

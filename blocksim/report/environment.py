@@ -25,6 +25,7 @@ def environment() -> Environment:
             tone: [JOINT * each for each in style.DASHES.get(tone, ())]
             for tone in style.JOINTS.values()
         },
+        "miss_colour": style.MISS,
         "thrust_colour": style.THRUST,
         "verdict_colours": style.VERDICTS,
         "load_colours": {"dead": style.DEAD, "live": style.LIVE, "gravity": style.QUIET},

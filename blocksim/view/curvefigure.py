@@ -19,9 +19,8 @@ from blocksim.simulation.verdict import Verdict
 from blocksim.view.drawing import literal, new_figure
 from blocksim.view.sheet import title_of
 from blocksim.view.structure import draw_structure
-from blocksim.view.style import FONT, INK, LIVE, MODES, QUIET, VERDICTS
+from blocksim.view.style import FONT, INK, LIVE, QUIET, THRUST, VERDICTS
 
-COLOURS = (INK, *(style.colour for style in MODES.values()))
 DASHES = ("-", (0, (5, 2)))
 HIGHEST = 5.0
 """Load factor over the least one, up to which the curve is shown."""
@@ -32,11 +31,12 @@ BEYOND = 3.0
 
 
 class Line(NamedTuple):
-    """A line of a diagram: its name, and its points."""
+    """A line of a diagram: its name, its points, and the colour of what it shows."""
 
     name: str
     x: Sequence[float]
     y: Sequence[float]
+    colour: str = INK
 
 
 def curve_figure(title: str, across: str, up: str, lines: Sequence[Line]) -> Figure:
@@ -45,7 +45,7 @@ def curve_figure(title: str, across: str, up: str, lines: Sequence[Line]) -> Fig
         figure = new_figure((7.6, 4.2), pad=0.1)
         axes = figure.add_subplot()
         for place, line in enumerate(lines):
-            axes.plot(line.x, line.y, color=COLOURS[place], ls=DASHES[place % 2], lw=1.3,
+            axes.plot(line.x, line.y, color=line.colour, ls=DASHES[place % 2], lw=1.3,
                       label=line.name, gid=line.name)  # fmt: skip
         axes.set_xlabel(across)
         axes.set_ylabel(up)
@@ -105,8 +105,8 @@ def _thrusts(axes: Axes, answer: Crossing) -> None:
         if not found:
             continue
         x, least, most = np.array(found).T
-        for name, values, colour in (("min", least, COLOURS[1]), ("max", most, COLOURS[6])):
-            axes.plot(x, values, color=colour, ls=dashes, lw=1.1,
+        for name, values, wide in (("min", least, 0.8), ("max", most, 1.8)):
+            axes.plot(x, values, color=THRUST, ls=dashes, lw=wide,
                       label=f"{'least' if name == 'min' else 'greatest'}, heading {heading}",
                       gid=f"thrust-{name}-{heading}")  # fmt: skip
     axes.set_ylabel("thrust at the crown [kN]")

@@ -13,10 +13,8 @@ from blocksim.common.errors import InputError
 from blocksim.common.words import printable
 from blocksim.reading.drawing import Drawing, plain
 from blocksim.view.drawing import literal
-from blocksim.view.style import FONT, INK, QUIET, STONE
+from blocksim.view.style import FONT, INK, MISS, QUIET, STONE
 
-WRONG = "#b00000"
-"""What was refused."""
 MOST = 12
 """Refusals that are listed below the picture."""
 NAMED = 400
@@ -46,7 +44,7 @@ def read_figure(drawing: Drawing, refusal: InputError | None = None) -> Figure:
             gid = f"{'support' if fixed else 'block'}-{name}"
             axes.fill(*np.array(shape.corners).T, ec=QUIET, lw=0.6, gid=gid, **look)  # type: ignore[arg-type]
             if name in words:
-                axes.fill(*np.array(shape.corners).T, fc="none", ec=WRONG, lw=2.2, zorder=5,
+                axes.fill(*np.array(shape.corners).T, fc="none", ec=MISS, lw=2.2, zorder=5,
                           gid=f"marked-{name}")  # fmt: skip
             if not many or name in words:
                 middle = np.mean(shape.corners, axis=0).tolist()
@@ -56,13 +54,13 @@ def read_figure(drawing: Drawing, refusal: InputError | None = None) -> Figure:
         for number, each in enumerate(drawing.refused, start=1):
             corners = each.shape.corners
             if len(corners) > 1:
-                axes.plot(*np.array(corners).T, color=WRONG, lw=1.6, zorder=6)
+                axes.plot(*np.array(corners).T, color=MISS, lw=1.6, zorder=6)
             place = each.at or (tuple(np.mean(corners, axis=0).tolist()) if corners else None)
             if place is not None:
-                axes.plot(*place, "o", ms=9, mfc="none", mec=WRONG, mew=1.6, zorder=7,
+                axes.plot(*place, "o", ms=9, mfc="none", mec=MISS, mew=1.6, zorder=7,
                           gid=f"refused-{number}")  # fmt: skip
                 axes.annotate(str(number), place, xytext=(6, 6), textcoords="offset points",
-                              color=WRONG, zorder=7)  # fmt: skip
+                              color=MISS, zorder=7)  # fmt: skip
             said.append(f"{number}  {each.said}: {each.why}")
         if not said:
             said = ["nothing was refused"]
@@ -72,5 +70,5 @@ def read_figure(drawing: Drawing, refusal: InputError | None = None) -> Figure:
             part for line in lines for part in textwrap.wrap(literal(printable(line)), 140)
         ]
         figure.text(0.03, 0.19, "\n".join(folded), va="top", fontsize=7,
-                    color=WRONG if refusal is not None else QUIET)  # fmt: skip
+                    color=MISS if refusal is not None else QUIET)  # fmt: skip
     return figure

@@ -45,8 +45,8 @@ FILL = "#efe9dc"
 """Of fill and backing, which are hatched."""
 INK, QUIET = "#222222", "#5d5a53"
 """Of lines and words, and of those that matter less."""
-MISS = "#c00000"
-"""Of what an engine got wrong."""
+MISS = "#dd0000"
+"""Of what is wrong: answers of engines, blocks that overlap, shapes that are refused."""
 
 
 def _mode(colour: str, marker: str) -> Style:

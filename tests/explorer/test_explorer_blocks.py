@@ -24,6 +24,15 @@ from blocksim.view.explorer.page import SHIPPED
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 TOLERANCE = 1e-6
+LOOKS = {
+    "Stands": "stands",
+    "Nothing can move": "stands",
+    "Collapses": "collapses",
+    "On the verge": "undecided",
+    "Undecided": "undecided",
+    "Blocks overlap": "wrong",
+}
+"""The colour of each verdict: what is open has neither that of what stands nor of what falls."""
 ANALYSE = """(all) => all.map((each) => {
   const mu = each.mu === "inf" ? Infinity : each.mu;
   const { joints, rest, bears, tilts } = blockwork.analyse({ ...each, mu });
@@ -129,7 +138,9 @@ def to_own(page: Any) -> None:
 
 def told(page: Any) -> str:
     settle(page)
-    return page.inner_text("#own-verdict") + ". " + page.inner_text("#own-because")
+    verdict = page.inner_text("#own-verdict")
+    assert page.get_attribute("#own-verdict", "class") == f"verdict {LOOKS[verdict]}"
+    return verdict + ". " + page.inner_text("#own-because")
 
 
 def drag(page: Any, what: str, across: float, down: float) -> None:
@@ -191,6 +202,10 @@ def test_a_wall_of_ones_own(page: Any) -> None:
     assert told(page).startswith("Stands")
     page.fill("#lean-number", "40")
     assert told(page).startswith("Collapses")
+    page.select_option("#structure", "column")
+    page.fill("#rub-number", "2")
+    page.fill("#lean-number", repr(math.degrees(math.atan(1 / 3))))  # a third as wide as high
+    assert told(page).startswith("On the verge")
     page.click("#to-map")
     page.wait_for_selector("#map")
     assert page.inner_text("#verdict").startswith("On the verge")

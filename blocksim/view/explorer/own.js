@@ -114,11 +114,11 @@ const own = (() => {
   }
 
   function words() {
-    if (seen.overlaps.length) return ["Blocks overlap", "Move one of those outlined, or drag its corners.", "collapses"];
+    if (seen.overlaps.length) return ["Blocks overlap", "Move one of those outlined, or drag its corners.", "wrong"];
     if (seen.loose.length) return ["Collapses", "Nothing holds the blocks outlined: let them touch others.", "collapses"];
     if (!seen.rest) return ["Nothing can move", "Every block is fixed.", "stands"];
     const { rest, bears, tilts } = seen;
-    if (Number.isNaN(rest.margin)) return ["Undecided", "Rounding hides whether it stands.", "collapses"];
+    if (Number.isNaN(rest.margin)) return ["Undecided", "Rounding hides whether it stands.", "undecided"];
     const angles = tilts.map(({ factor }) => (factor === null ? null : plain(Math.atan(factor) / DEGREE)));
     const tilted = angles.includes(null) ? "" : ` Tilted slowly from level ground, it falls at ${angles[0] === angles[1]
       ? `${angles[0]}° to either side` : `${angles[0]}° to the right, at ${angles[1]}° to the left`}.`;
@@ -126,7 +126,7 @@ const own = (() => {
       null: "No load at this point lets it stand.", Infinity: "No load at this point brings it down.",
       NaN: "Rounding hides what it bears here.",
     }[bears.factor] ?? `At this point it bears ${plain(100 * bears.factor)} % of the weight of all blocks.`;
-    if (Math.abs(rest.margin ?? 1) < VERGE) return ["On the verge", `It just stands, or just falls. ${load}${tilted}`, "stands"];
+    if (Math.abs(rest.margin ?? 1) < VERGE) return ["On the verge", `It just stands, or just falls. ${load}${tilted}`, "undecided"];
     if (rest.margin > 0) return ["Stands", `Forces within friction and without tension hold it. ${load}${tilted}`, "stands"];
     const borne = bears.factor > state.load.share ? " It needs a larger load here to stand." : bears.factor >= 0 ? ` ${load}` : "";
     return ["Collapses", `No forces within friction and without tension hold it.${borne}${tilted}`, "collapses"];

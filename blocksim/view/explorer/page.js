@@ -70,7 +70,7 @@
   function show() {
     const both = { continuous: assess(state, false), built: assess(state, true) };
     seen = state.asBuilt ? both.built : both.continuous;
-    const verdict = seen.stands ? "stands" : "collapses";
+    const verdict = seen.verge ? "undecided" : seen.stands ? "stands" : "collapses";
     const moves = (!seen.stands || seen.verge) && seen.joints.length > 0;
     put("verdict", words.headline(state, seen));
     find("verdict").className = `verdict ${verdict}`;
