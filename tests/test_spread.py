@@ -350,7 +350,7 @@ def file(tmp_path: Path) -> Path:
 def test_supports_that_move_are_recorded_until_all_has_fallen(
     file: Path, tmp_path: Path
 ) -> None:
-    """The supports go apart evenly, until it falls near the way known; then all comes to rest."""
+    """The supports go apart evenly, until it falls near the way known; all comes to rest."""
     out = tmp_path / "run.npz"
     done = blocksim("simulate", str(file), "--over", "spread", "--out", str(out))
     assert done.returncode == 0, done.stderr

@@ -137,20 +137,18 @@ def film(out: Path, shown: Sequence[Recording[Any]], at: float | None, **options
         later = f": {asked:g} is after the end, so it shows the end, {end}"
         say(f"wrote {out}{later if end else ''}")
         return
-    if not any(made.moves):
-        say(
-            f"wrote {out}: a film of {made.count / made.rate:.1f} s, in which nothing is seen to move"
-        )
     why = ", until a block reaches the ground or a footing" if made.on_ground else ""
     radius = "" if made.metric else " (if r = 1 m)"
     length = made.count / made.rate
     pace = f"{made.slow:g} times slower" if made.slow != 1 else "in real time"
     rest = f"{length - made.seconds * made.slow:.1g} s"
     ends = f"{rest} of stills; blocks still move as it ends, at {made.speed:.2g} m/s"
-    say(
-        f"wrote {out}: a film of {length:.1f} s: {made.seconds:.3g} s of motion{radius}, "
-        f"{pace}, and {ends if made.speed else f'{rest} at rest'}{why}"
+    shows = (
+        f"{made.seconds:.3g} s of motion{radius}, {pace}, and "
+        f"{ends if made.speed else f'{rest} at rest'}{why}"
     )
+    said = shows if any(made.moves) else "nothing is seen to move"
+    say(f"wrote {out}: a film of {length:.1f} s: {said}")
     for recording, moves in zip(shown, made.moves, strict=True):
         left = recording.quality.residual or 0.0
         if recording.problem.in_space and left > ROUGH:

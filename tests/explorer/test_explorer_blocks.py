@@ -32,7 +32,7 @@ LOOKS = {
     "Undecided": "undecided",
     "Blocks overlap": "wrong",
 }
-"""The colour of each verdict: what is open has neither that of what stands nor of what falls."""
+"""The colour of each verdict: what is open looks neither as what stands nor as what falls."""
 ANALYSE = """(all) => all.map((each) => {
   const mu = each.mu === "inf" ? Infinity : each.mu;
   const { joints, rest, bears, tilts } = blockwork.analyse({ ...each, mu });
