@@ -16,6 +16,8 @@ from rocking import on_pulse
 
 import blocksim
 from blocksim import JointState, Recording
+from blocksim.ask.push import across
+from blocksim.view.canvas import colour
 from blocksim.view.drawing import words_of
 from blocksim.view.film import Film
 from blocksim.view.following import FARTHEST
@@ -174,6 +176,28 @@ def test_loads_are_drawn_where_they_act_and_go_with_their_blocks(tmp_path: Path)
     quiet = Film([recorded(still, 0 * moved, times)], height=HEIGHT)
     assert all(acting.entries == [] for acting in quiet._acting)
     assert DEAD not in {tone for acting in film._acting for _, tone in acting.entries}
+
+
+def test_a_push_is_one_arrow_in_a_corner_with_its_share_of_the_weight() -> None:
+    """On Oppenheim's arch 0.45 to the right, live; dead and to the left on a wall."""
+    arch = replace(blocksim.load("oppenheim_7"), load=0.45)
+    wall = blocksim.load("wall", friction=0.7)
+    wall = replace(wall, dead=(across(wall, -0.25),))
+    for problem, words, tone, way in (
+        (arch, "push 0.45 g", LIVE, 1), (wall, "push 0.25 g", DEAD, -1),
+    ):  # fmt: skip
+        count = len(problem.assembly.blocks)
+        film = Film([recorded(problem, np.zeros((2, count, 3)), np.arange(2.0))], height=720)
+        (acting,), (stage,) = film._acting, film._stages
+        moment = stage.at(0.0)
+        assert acting.entries == []
+        assert acting.shapes(moment) == []
+        shapes, (label,) = acting.aside(moment, 1.0)
+        assert label.words == words
+        line, head = (each.points for each in shapes)
+        assert way * (line[-1, 0] - line[0, 0]) > 20
+        assert way * (head[:, 0].mean() - line[:, 0].mean()) > 10
+        assert (shapes[0].edge, shapes[1].fill) == (colour(tone), colour(tone))
 
 
 def test_the_pulse_has_its_mark_at_the_time_shown() -> None:

@@ -32,6 +32,8 @@ POINTS = 240
 """Of a pulse."""
 FIXED = 0.25
 """Distance between marks that stand still as the ground moves [size]."""
+PUSH = 56.0
+"""Length of the arrow of a push, beside its words [pixels at 720]."""
 
 
 class Acting:
@@ -42,7 +44,7 @@ class Acting:
     ) -> None:
         self._stage, self._view, self._panel, self._size = stage, view, panel, size
         problem = stage.recording.problem
-        self._loads = _resultants(problem)
+        self._pushes, self._loads = _pushes(problem), _resultants(problem)
         self._largest = max((float(np.linalg.norm(f)) for *_, f in self._loads), default=0.0)
 
     @property
@@ -65,7 +67,7 @@ class Acting:
         return drawn
 
     def aside(self, moment: Any, share: float) -> tuple[list[Shape], list[Label]]:
-        """Draw what has its own place: the pulse with the time, the amount of a spread.
+        """Draw what has its own place: a push, the pulse with the time, how far supports are.
 
         `share`: Of their size at which blocks are drawn.
         """
@@ -75,14 +77,26 @@ class Acting:
             seconds = moment.time * self._stage.unit
             shapes, labels = self._pulse(problem.shaking, seconds)
             shapes += self._marks(problem.shaking, seconds, share)
-        moved = self._moved(moment)
-        if moved is not None:
-            words = f"supports moved {abs(1e3 * moved):.1f} mm"
-            x = self._panel.x + self._panel.width - 24 * size
-            x -= width_of(words, 16 * size, bold=True)
-            y = self._panel.y + self._panel.height - 24 * size
-            labels.append(Label(x, y, words, size=16 * size, bold=True))
+        if (moved := self._moved(moment)) is not None:
+            labels.append(self._corner(f"supports moved {abs(1e3 * moved):.1f} mm"))
+        for kind, share_of_weight in self._pushes:
+            label = self._corner(f"push {np.linalg.norm(share_of_weight):.3g} g")
+            labels.append(label)
+            ends = np.stack([0 * share_of_weight, AHEAD * share_of_weight])
+            way = np.diff(self._view.places(ends), axis=0)[0]
+            way *= PUSH * size / max(float(np.hypot(*way)), 1e-9)
+            middle = np.array([label.x - (PUSH / 2 + 14) * size, label.y + 5 * size])
+            tone = colour(LIVE if kind == "live" else DEAD)
+            shapes += arrow(middle - way / 2, middle + way / 2, tone, size)
         return shapes, labels
+
+    def _corner(self, words: str) -> Label:
+        """Words in the upper right corner, below the inset of ground that shakes."""
+        size, panel = self._size, self._panel
+        x = panel.x + panel.width - 24 * size - width_of(words, 16 * size, bold=True)
+        inset = 0.0 if self._stage.recording.problem.shaking is None else (TALL + 66) * size
+        y = panel.y + panel.height - 24 * size - inset
+        return Label(x, y, words, size=16 * size, bold=True)
 
     def _moved(self, moment: Any) -> float | None:
         """How far supports have moved, as they are told to [m]; None where none do."""
@@ -123,11 +137,11 @@ class Acting:
             Shape(across, edge=ink, width=1.8 * size, closed=False),
             Shape(ring, fill=colour(LIVE)),
         ]
-        words, upward = f"ground {rate * largest:+.2f} g", list[Label]()
+        words, upward = f"ground {_signed(rate * largest)} g", list[Label]()
         if shaking.is_vertical:
             shapes.insert(1, Shape(upwards, edge=quiet, width=1.4 * size, closed=False))
             # Below the other: the corner is no wider.
-            low, says = middle - tall / 2 - 34 * size, f"upwards {up * largest:+.2f} g"
+            low, says = middle - tall / 2 - 34 * size, f"upwards {_signed(up * largest)} g"
             upward = [Label(left, low, says, size=14 * size)]
         under = middle - tall / 2 - 16 * size
         return shapes, [Label(left, under, words, size=14 * size, bold=True), *upward]
@@ -153,6 +167,11 @@ class Acting:
         ]  # fmt: skip
 
 
+def _signed(value: float) -> str:
+    """Write a value with its sign, and 0 without."""
+    return f"{value:+.2f}" if round(value, 2) else "0"
+
+
 @lru_cache(maxsize=4)
 def _accelerations(shaking: Shaking) -> tuple[Array, Array]:
     """Return times of a pulse [s], and means between, across and up, (times - 1, 2) [g]."""
@@ -161,18 +180,36 @@ def _accelerations(shaking: Shaking) -> tuple[Array, Array]:
     return times, np.diff(gained, axis=0) / np.diff(times)[:, None]
 
 
+def _loads(problem: Problem[Any]) -> Iterator[tuple[str, float, Load]]:
+    """Give each load with its kind and factor."""
+    yield from (("dead", 1.0, load) for load in problem.dead)
+    if problem.load:
+        yield from (("live", problem.load, load) for load in problem.live)
+
+
+def _is_push(problem: Problem[Any], load: Load) -> bool:
+    """Tell whether a load acts on all blocks, by the weight of each: one arrow shows it."""
+    return load.per_weight and len(load.blocks) == len(problem.assembly.blocks) > 1
+
+
+def _pushes(problem: Problem[Any]) -> list[tuple[str, Array]]:
+    """Collect pushes: kind, and share of the weight, y upwards, (3,)."""
+    flat = np.diag([1.0, 1.0, 0.0])
+    return [
+        (kind, factor * (UPRIGHT if problem.in_space else flat) @ np.resize(load.force, 3))
+        for kind, factor, load in _loads(problem)
+        if _is_push(problem, load)
+    ]
+
+
 def _resultants(problem: Problem[Any]) -> list[tuple[str, int, Array, Array]]:
-    """Collect loads: kind, block, point from its centre [size], and force."""
-    found: list[tuple[str, int, Array, Array]] = []
-    kinds: tuple[tuple[str, tuple[Load, ...], float], ...] = (
-        ("dead", problem.dead, 1.0),
-        ("live", problem.live, problem.load),
-    )
-    for kind, loads, factor in kinds:
-        for load in loads if factor else ():
-            for block, force, arm in _acting(problem, load):
-                found.append((kind, block, arm / problem.assembly.size, factor * force))
-    return found
+    """Collect other loads: kind, block, point from its centre [size], and force."""
+    return [
+        (kind, block, arm / problem.assembly.size, factor * force)
+        for kind, factor, load in _loads(problem)
+        if not _is_push(problem, load)
+        for block, force, arm in _acting(problem, load)
+    ]
 
 
 def _acting(problem: Problem[Any], load: Load) -> Iterator[tuple[int, Array, Array]]:
