@@ -92,7 +92,7 @@ def _factors(axes: Axes, answer: Crossing) -> None:
         at = _middle(answer.worst.axles)
         axes.plot(at, least, "o", color=LIVE, ms=5, gid="worst", label=f"least {least:.6g}")
     axes.set_ylabel("load factor")
-    axes.legend(frameon=False, ncols=3, loc="upper center")
+    axes.legend(frameon=False, ncols=3, loc="lower center")
 
 
 def _thrusts(axes: Axes, answer: Crossing) -> None:

@@ -125,7 +125,7 @@ const own = (() => {
     const load = {
       null: "No load at this point lets it stand.", Infinity: "No load at this point brings it down.",
       NaN: "Rounding hides what it bears here.",
-    }[bears.factor] ?? `At this point it bears ${plain(100 * bears.factor)} % of the weight of all blocks.`;
+    }[bears.factor] ?? `At this point it bears ${plain(100 * bears.factor)} % of the weight of all blocks; with more, it falls as the slider shows.`;
     if (Math.abs(rest.margin ?? 1) < VERGE) return ["On the verge", `It just stands, or just falls. ${load}${tilted}`, "undecided"];
     if (rest.margin > 0) return ["Stands", `Forces within friction and without tension hold it. ${load}${tilted}`, "stands"];
     const borne = bears.factor > state.load.share ? " It needs a larger load here to stand." : bears.factor >= 0 ? ` ${load}` : "";
