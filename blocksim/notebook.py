@@ -30,6 +30,7 @@ from blocksim.report.answerwords import bracket_lines, check_lines
 from blocksim.report.problems import (
     arch_size_lines,
     described,
+    length_lines,
     problem_record,
     size_lines,
     size_record,
@@ -120,7 +121,8 @@ def _problem_lines(problem: Problem[Any]) -> list[str]:
 def _recording_lines(run: Recording) -> list[str]:
     said = recording_lines(run, run.problem.length_name)
     motion = [f"  motion  {line.strip()}" for line in said]
-    return [f"Recording by {run.engine}", *motion, f"  what    {described(run.problem)}"]
+    what = f"  what    {described(run.problem)}"
+    return [f"Recording by {run.engine}", *motion, what, *length_lines(run.problem)]
 
 
 def _arch_lines(arch: Arch) -> list[str]:

@@ -17,6 +17,8 @@ WAYS = {"right": 1.0, "left": -1.0}
 """Names and signs of the two ways."""
 WAY = 5e-3
 """Way of the fastest corner in one step of a curve [size]."""
+DIGITS = 9
+"""Of pushes in g, to which two ways are alike."""
 STEPS = 400
 """Most points of a curve."""
 
@@ -68,13 +70,15 @@ def borne(problem: Problem) -> dict[str, float]:
 
 def worse(both: Mapping[str, float]) -> str:
     """Return the way in which less is borne; of two alike the right."""
-    return min(both, key=lambda way: (both[way], way == "left"))
+    return min(both, key=lambda way: (round(both[way], DIGITS), way == "left"))
 
 
 def borne_words(both: Mapping[str, float]) -> str:
     """Say what is borne both ways."""
     if max(both.values()) == -np.inf:
         return "it bears no push either way"
+    if len({round(each, DIGITS) for each in both.values()}) == 1:
+        return f"it bears {both['right']:.6g} g either way"
     said = ", ".join(f"{each:.6g} g to the {way}" for way, each in both.items())
     return f"it bears {said}"
 
@@ -90,8 +94,7 @@ def pushed(problem: Problem, share: float) -> Problem:
     PUSH.require("push", share)
     both = borne(problem)
     worst = worse(both)
-    less = ", of both ways the worse" if both[worst] > -np.inf else ""
-    note = f"pushed by {share:g} g to the {worst}{less}: {borne_words(both)}"
+    note = f"pushed by {share:g} g to the {worst}: {borne_words(both)}"
     dead = (*problem.dead, across(problem, WAYS[worst] * share))
     return replace(problem, dead=dead, notes=(*problem.notes, note))
 

@@ -28,7 +28,7 @@ from blocksim.common.words import counted
 from blocksim.engines import NAMES
 from blocksim.kinds.loading import load_recording
 from blocksim.report.poses import write_recording_csv, write_recording_json
-from blocksim.simulation.motion import MOVED
+from blocksim.simulation.motion import EARLY
 from blocksim.simulation.observation import conclude, hold
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
@@ -181,7 +181,7 @@ def _motionless(recording: Recording) -> str:
     """Say that nothing is seen to move in a recording, and what to do where it falls."""
     moved = float(recording.displacement.max())
     arch = ", ".join([*recording.problem.measures, recording.engine])
-    if moved > MOVED:
+    if moved > EARLY:
         return (
             f"nothing is seen to move in one recording ({arch}): it ends when it has "
             f"moved {moved:.2g} r; simulate --seconds 2 records how it falls"

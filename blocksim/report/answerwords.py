@@ -19,6 +19,7 @@ from blocksim.report.carried import carried_lines
 from blocksim.report.problems import (
     described,
     is_metric,
+    length_lines,
     measured_line,
     size_lines,
     unit_lines,
@@ -54,6 +55,7 @@ def check_lines(answer: Check[Any], carried: Carried | None = None) -> list[str]
         else _arch_line(of, problem, tried=True),
         *size_lines(problem),
         *because_lines(answer.evidence),
+        *(length_lines(problem) if of is None and answer.simulated is not None else ()),
     ]
     if answer.load_factor is not None:
         at = f", asked at {problem.load:g}" if problem.load else ""

@@ -202,8 +202,14 @@ def described(problem: Problem[Any]) -> str:
         said.append(f"strength {problem.strength / 1e6:g} MPa")
     if problem.shaking is not None:
         said.append(problem.shaking.words)
-    said.append(f"L = {assembly.size:g} m" if problem.has_size else "L = r")
     return ", ".join(said)
+
+
+def length_lines(problem: Problem[Any]) -> list[str]:
+    """Say what L is, where that is the unit of motion."""
+    if problem.length_name != "L":
+        return []
+    return [f"  length  L = {problem.assembly.size:g} m, the size of the structure"]
 
 
 def weighed_arch(problem: Problem) -> Arch | None:
