@@ -235,7 +235,7 @@ def test_it_fits_the_paper(windows: Windows, pages: Path, name: str) -> None:
     assert not page.locator(".controls").first.is_visible()
     printed = page.pdf(prefer_css_page_size=True, print_background=True)
     assert b"/MediaBox [0 0 594" in printed or b"/MediaBox [0 0 595" in printed
-    assert len(re.findall(rb"/Type /Page\b", printed)) <= 3
+    assert len(re.findall(rb"/Type /Page\b", printed)) <= (3 if name in {"wall", "road"} else 2)
 
 
 @pytest.mark.parametrize("scheme", [pytest.param("light", marks=pytest.mark.long), "dark"])

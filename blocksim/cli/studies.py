@@ -13,6 +13,7 @@ from blocksim.cli.output import progress, say
 from blocksim.cli.terminal import Table, show
 from blocksim.common.checks import Range
 from blocksim.common.files import make_folder
+from blocksim.common.words import counted
 from blocksim.engines import NAMES, engine_named
 from blocksim.report.answerwords import ratio, signed
 from blocksim.report.structurewords import found_of, question_of, summary_of_structures
@@ -105,11 +106,17 @@ def validation_lines(rows: list[Validation], unasked: Sequence[Unasked] = ()) ->
     """Return how many rows agree, what does not, and where engines differ, in words."""
     misses = [row for row in rows if row.miss]
     right = f"{len(rows) - len(misses)} of {len(rows)}"
-    lines = [f"{right} agree with the exact answer in every respect"]
+    lines = [
+        "mode, published: of the continuous arch, the thickness as a share of the radius",
+        "limit: least thickness of the voussoirs as built",
+        "engines: the mode that is seen, and how far their least thickness is from limit's",
+        f"{right} answers of engines agree with limit: thickness, mode and verdict",
+    ]
     lines += [f"  {row.scenario}, {row.engine}: {row.miss} ({row.note})" for row in misses]
     if len({row.engine for row in rows}) > 1:
         apart = disagreements(rows)
-        lines.append(f"the engines disagree in {len(apart)} places")
+        places = counted(len(apart), "place") if apart else "no place"
+        lines.append(f"engines contradict each other in {places}")
         lines += [f"  {each}" for each in apart]
     return lines + [f"not asked of {each.words}" for each in unasked]
 

@@ -30,6 +30,8 @@ MOST = 60
 """Joints in the table; of more, those that are used most."""
 MANY_SUPPORTS = 12
 """Supports in the table of reactions."""
+MEASURED = ("thickness", "voussoirs", "depth", "radius", "left_deg", "right_deg")
+"""Parameters of a circular arch that its dimensions say."""
 CUBIC = "kN/m\N{SUPERSCRIPT THREE}"
 
 
@@ -104,8 +106,13 @@ def _dimensions(problem: Problem[Any]) -> list[Fact]:
 
 
 def given_facts(problem: Problem[Any]) -> list[Fact]:
-    """Echo every parameter that a kind of structure was made with."""
-    return [] if problem.maker is None else _parameters(problem.maker, "")
+    """Echo every parameter that a kind of structure was made with.
+
+    Those of a circular arch that its dimensions say are not said again.
+    """
+    arch = None if problem.in_space else weighed_arch(problem)
+    found = [] if problem.maker is None else _parameters(problem.maker, "")
+    return [each for each in found if arch is None or each.name not in MEASURED]
 
 
 def _parameters(maker: Kind[Any], path: str) -> list[Fact]:
