@@ -67,6 +67,14 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     )
 
 
+@pytest.fixture(params=["direct", "pymunk", "pybullet"])
+def engine(request: pytest.FixtureRequest) -> str:
+    """Engines that tell what joints carry; pybullet has no wheels for newer Pythons."""
+    if request.param == "pybullet":
+        pytest.importorskip("pybullet")
+    return request.param
+
+
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
     """Chromium, where it is installed; without windows it takes two thirds of the time."""

@@ -12,6 +12,7 @@ from blocksim.blocks.joints import joint_motion
 from blocksim.engines.base import trusted
 from blocksim.engines.contact import ContactProblem
 from blocksim.engines.direct import ENGINE, Blocks
+from blocksim.simulation.motion import moving_run
 from blocksim.simulation.observation import observe
 from blocksim.simulation.onset import onset
 from blocksim.simulation.simulated import Simulation
@@ -178,3 +179,37 @@ def test_where_nothing_slides_steep_friction_moves_it_as_none_at_all(half_angle_
     assert arch_at(0.99, half_angle_deg, mu, 15).eta == pytest.approx(arch.eta, rel=1e-12)
     steep, free = (world_of(arch, each).hold(1) for each in (mu, math.inf))
     assert np.abs(steep - free).max() < 1e-9 * np.abs(free).max()
+
+
+def test_deeper_overlap_than_allowed_is_undecided():
+    def hold(world):
+        world.hold(1)
+
+    simulation = Simulation.of(
+        CircularArch.of(arch_at(0.9, 90, 0.9, 12), 0.9).problem(), "direct"
+    )
+    # Below the round-off of corners at rest nothing could pass.
+    strict = replace(simulation, settings=replace(simulation.settings, penetration=-1.0))
+    world = strict.world()
+    world.hold(1)
+    motion = moving_run(strict, world, hold)
+    assert motion.verdict is Verdict.UNDECIDED
+    assert "overlap" in motion.reason
+    world = simulation.world()
+    world.hold(1)
+    assert moving_run(simulation, world, hold).verdict is Verdict.COLLAPSES
+
+
+def test_without_slip_joints_turn_and_part_but_do_not_slide():
+    arch = arch_at(0.95, 90, math.inf, 15)
+    assembly, world = arch.assembly(), world_of(arch, math.inf)
+    world.hold(1)
+    for _ in range(130):
+        world.advance(1)
+    motion = joint_motion(assembly, world.poses())
+    closed = motion.gap.min(axis=1) < 1e-6
+    assert np.abs(motion.gap).max() > 0.02
+    assert closed.sum() > 10
+    # Friction of 0.35 lets the same joints slide by far more.
+    assert np.abs(motion.slip[closed]).max() < 1e-3
+    assert world.quality().residual < 1e-7

@@ -25,7 +25,6 @@ from blocksim import (
     equilibrium,
     structure_of,
 )
-from blocksim.engines import ENGINES
 from blocksim.simulation.merging import Merging
 from blocksim.simulation.observation import hold, observe
 from blocksim.simulation.onset import onset
@@ -35,14 +34,6 @@ from tests.assemblies import box, sketch
 
 LOADED = ("oppenheim_28", "ferris_tinloi_1", "two_spans_load_b9")
 """Structures whose largest load factor is known."""
-
-
-@pytest.fixture(params=[name for name in ENGINES if ENGINES[name].tells_forces])
-def engine(request: pytest.FixtureRequest) -> str:
-    """Every engine by name; pybullet has no wheels for newer Pythons."""
-    if request.param == "pybullet":
-        pytest.importorskip("pybullet")
-    return request.param
 
 
 def known(name: str, share: float) -> Problem:

@@ -25,7 +25,6 @@ from blocksim import (
 from blocksim.arch import limit
 from blocksim.arch.modes import observed_mode
 from blocksim.arch.reduction import MIRROR, Reduction
-from blocksim.engines import ENGINES
 from blocksim.simulation.observation import hold, observe
 from blocksim.simulation.onset import onset
 from blocksim.simulation.simulated import Simulation
@@ -47,14 +46,6 @@ CASES = [
 SWEEPS = {"direct": 1, "pymunk": 40_000, "pybullet": 40_000}
 EXACT = {"direct": 1e-10, "pymunk": 1e-5, "pybullet": 2e-4}
 """Of resultants [mean weights]; where engines sweep, shapes overlap by 2.5e-7 and 2e-5 r."""
-
-
-@pytest.fixture(params=[name for name in ENGINES if ENGINES[name].tells_forces])
-def engine(request: pytest.FixtureRequest) -> str:
-    """Every engine by name; pybullet has no wheels for newer Pythons."""
-    if request.param == "pybullet":
-        pytest.importorskip("pybullet")
-    return request.param
 
 
 def accelerations(held):

@@ -19,7 +19,7 @@ from own_balance import violation
 from scipy.optimize import brentq
 
 from blocksim import Assembly, Block, Joint, Problem, Verdict
-from blocksim.engines import ENGINES, get_engine
+from blocksim.engines import get_engine
 from blocksim.simulation.motion import LONGEST, MOVED, QUIET
 from blocksim.simulation.onset import onset
 from blocksim.simulation.simulated import Simulation
@@ -30,13 +30,11 @@ ENOUGH = 1.0
 """Friction with which no block slides where it is to tip."""
 
 
-SLOW = {"mujoco"}
-"""It needs up to a minute for a motion; `test_mujoco.py` has short ones."""
-
-
 @pytest.fixture(
     params=[
-        pytest.param(name, marks=pytest.mark.long) if name in SLOW else name for name in ENGINES
+        *("direct", "pymunk", "pybullet"),
+        # It needs up to a minute for a motion; `test_mujoco.py` has short ones.
+        pytest.param("mujoco", marks=pytest.mark.long),
     ]
 )
 def engine(request: pytest.FixtureRequest) -> str:
