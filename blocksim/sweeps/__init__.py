@@ -2,6 +2,7 @@
 
 from blocksim.sweeps.case import Case as Case
 from blocksim.sweeps.case import Questions as Questions
+from blocksim.sweeps.case import SweepRow as SweepRow
 from blocksim.sweeps.design import Design as Design
 from blocksim.sweeps.load import load_design as load_design
 from blocksim.sweeps.run import Summary as Summary

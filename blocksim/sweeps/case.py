@@ -6,7 +6,16 @@ import json
 import math
 from collections.abc import Iterable, Iterator
 from hashlib import blake2b
-from typing import Any, NamedTuple, Protocol, cast
+from typing import (
+    Any,
+    Literal,
+    NamedTuple,
+    Protocol,
+    TypedDict,
+    cast,
+    get_args,
+    get_type_hints,
+)
 
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import AMPLITUDE, DURATION
@@ -26,42 +35,58 @@ ACTING = {
     "duration_s": Field(about="how long it shakes", range=DURATION),
 }
 """What acts on a structure."""
+Text = str | None
+Number = float | None
+Infinite = float | Literal["inf", "-inf"] | None
+
+
+class SweepRow(TypedDict):
+    """A row of a sweep, as `read_rows` gives it; what there is nothing of is None."""
+
+    id: str
+    kind: Text
+    half_angle_deg: Number
+    mu: Infinite
+    voussoirs: int | None
+    weight: Text
+    eta: Number
+    ratio: Number
+    parameters: dict[str, object] | None
+    load: Number
+    tilt_deg: Number
+    amplitude_g: Number
+    duration_s: Number
+    over: Text
+    unit: Text
+    asked: str
+    settings: dict[str, float] | None
+    method: Text
+    version: Text
+    verdict: Text
+    rest: Text
+    load_factor: Infinite
+    largest_rotation_deg: Number
+    first_impact_s: Number
+    limit: Infinite
+    low: Number
+    high: Number
+    mode: Text
+    mode_in_motion: Text
+    mode_theory: Text
+    eta_theory: Number
+    eta_limit: Number
+    eta_low: Number
+    eta_high: Number
+    confirmed: bool | None
+    reason: Text
+    error: Text
+    wall_s: float
+
+
+_ARROW: dict[object, str] = {str: "string", float: "double", int: "int64", bool: "bool"}
 COLUMNS = {
-    "id": "string",
-    "kind": "string",
-    "half_angle_deg": "double",
-    "mu": "double",
-    "voussoirs": "int64",
-    "weight": "string",
-    "eta": "double",
-    "ratio": "double",
-    "parameters": "parameters",
-    **dict.fromkeys(ACTING, "double"),
-    "over": "string",
-    "unit": "string",
-    "asked": "string",
-    "settings": "settings",
-    "method": "string",
-    "version": "string",
-    "verdict": "string",
-    "rest": "string",
-    "load_factor": "double",
-    "largest_rotation_deg": "double",
-    "first_impact_s": "double",
-    "limit": "double",
-    "low": "double",
-    "high": "double",
-    "mode": "string",
-    "mode_in_motion": "string",
-    "mode_theory": "string",
-    "eta_theory": "double",
-    "eta_limit": "double",
-    "eta_low": "double",
-    "eta_high": "double",
-    "confirmed": "bool",
-    "reason": "string",
-    "error": "string",
-    "wall_s": "double",
+    name: _ARROW.get((*get_args(kind), kind)[0], name)
+    for name, kind in get_type_hints(SweepRow).items()
 }
 """The keys of a row, and what Arrow calls their types; each kind has parameters of its own."""
 Row = dict[str, object]

@@ -13,7 +13,7 @@ from filelock import FileLock, Timeout
 
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, refused, write_whole
-from blocksim.sweeps.case import EMPTY
+from blocksim.sweeps.case import EMPTY, SweepRow
 
 HEAD = b'{"id": "'
 ID_LENGTH = 24
@@ -76,7 +76,7 @@ def _mend(path: Path) -> None:
         path.unlink()
 
 
-def read_rows(folder: AnyPath) -> Iterator[dict[str, object]]:
+def read_rows(folder: AnyPath) -> Iterator[SweepRow]:
     """Read the rows of a sweep, in no particular order.
 
     Parameters
@@ -85,7 +85,7 @@ def read_rows(folder: AnyPath) -> Iterator[dict[str, object]]:
 
     Yields
     ------
-    dict
+    SweepRow
         The question (`kind`, `parameters`, `mu`, what acts, `over`, `asked`, `settings`),
         `method` that answered and its `version`, and the answer; `error` says why there is no
         answer. What there is nothing of is None: all rows have the same keys. Half-angle,
@@ -98,7 +98,7 @@ def read_rows(folder: AnyPath) -> Iterator[dict[str, object]]:
         If a file is not of a sweep.
     """
     for line in _lines(Path(folder)):
-        yield EMPTY | cast("dict[str, object]", json.loads(line))
+        yield cast("SweepRow", EMPTY | json.loads(line))
 
 
 def _lines(folder: Path) -> Iterator[bytes]:

@@ -141,7 +141,7 @@ def _cells(folder: AnyPath) -> tuple[list[str], Iterator[list[object]]]:
     for name in _columns(folder):
         names += settings if name == "settings" else [name]
 
-    def cells(row: dict[str, object]) -> list[object]:
+    def cells(row: Mapping[str, object]) -> list[object]:
         given = cast("dict[str, object]", row.get("settings") or {})
         found = _flat(row) | {f"settings.{name}": value for name, value in given.items()}
         return [found.get(name) for name in names]
@@ -197,7 +197,7 @@ def _column(name: str, known: Field | None) -> str:
     return f"{name.removesuffix(f'_{known.unit}')}_{known.unit}"
 
 
-def _flat(row: dict[str, object]) -> dict[str, object]:
+def _flat(row: Mapping[str, object]) -> dict[str, object]:
     """Return a row with its numbers as such, and with its parameters as columns."""
     found = dict(row)
     for key in NUMBERS:
