@@ -64,7 +64,7 @@ COMMANDS = {
     ),
     "suite replay": (
         "refereeing.replay",
-        "Make a recording of what an engine said of a scene, to film it.",
+        "Make a recording of what an engine said of a scene.",
     ),
     "sweep": (
         "sweeping.sweep",
