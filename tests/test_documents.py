@@ -253,7 +253,7 @@ def test_a_command_that_would_escape_is_seen(text: str) -> None:
 
 def test_the_readme_is_short_and_has_the_commands() -> None:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert len(text.splitlines()) <= 130
+    assert len(text.splitlines()) <= 133
     blocks = [each.text for each in fences(ROOT / "README.md") if each.language == "sh"]
     # `.ci/run` runs the second one.
     assert ".venv/bin/blocksim validate --quick" in blocks[0]

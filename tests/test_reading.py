@@ -442,7 +442,7 @@ BROKEN = {
     "layers.dxf": (lambda path: _dxf(path, SQUARE, layer="Mauerwerk"),
                    "1 LWPOLYLINE on layer Mauerwerk"),
     "open.dxf": (lambda path: _dxf(path, SQUARE, close=False),
-                 "on layer blocks at (0, 0) = 'ends there, and meets no other line'"),
+                 "on layer blocks at (0, 0) = 'ends there, and meets no other line (ends"),
     "recursive.dxf": (_recursive, "block references without a loop"),
     "steep.dxf": (lambda path: _dxf(path, SQUARE, dxfattribs={"layer": "blocks",
                   "extrusion": (0, 1, 0)}), "not in the xy plane"),

@@ -186,7 +186,7 @@ def _unmatched(edges: Sequence[_Edge], places: Array) -> list[Open]:
         for end in edge.ends:
             count[end] += edge.times
             at.setdefault(end, edge.line)
-    why = {1: "ends there, and meets no other line"}
+    why = {1: "ends there, and meets no other line (ends as near as --snap are one)"}
     more = "meets others there, and a line between two blocks is drawn once: draw around each"
     return [
         Open(at[end], (float(places[end][0]), float(places[end][1])), why.get(many, more))

@@ -176,6 +176,8 @@ def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
         if isinstance(each, Length):
             note = f" ({each.note})" if each.note else ""
             beside = each.what == "thickness"
+            # The rise has the middle of the span.
+            aside = each.ends[0] + 0.25 * (each.ends[1] - each.ends[0]) + [0.0, height]
             turn = math.degrees(math.atan2(each.along[1], each.along[0]))
             made = space.add_linear_dim(
                 base=tuple(each.at),
@@ -185,6 +187,8 @@ def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
                 angle=turn - 180 if turn > 90 else turn,
                 location=tuple(each.ends[1] + each.along * 20 * scale / 1e3)
                 if beside
+                else tuple(aside)
+                if each.what == "span"
                 else None,
                 text=f"{each.what} <> m{note}",
                 override=sizes,

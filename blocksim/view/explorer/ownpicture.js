@@ -19,12 +19,14 @@ const ownPicture = (() => {
     const pixel = Math.max(size[0] / picture.clientWidth, size[1] / picture.clientHeight);
     const turned = add(picture, "g", { id: "turned", transform: `rotate(${state.tilt / DEGREE}) scale(1 -1)` });
     const places = state.blocks.map(() => "");
+    const turns = state.blocks.map(() => 0);
     const shift = REACH * box.size * state.moved;
     if (moving) seen.given.moving.forEach(({ i, centre: [x, y] }, at) => {
       const [u, v, turn] = moving.rates[at];
       // About the centre that the rates have: blocks that move as one stay together.
-      places[i] = Math.abs(turn) * box.size > TURNLESS
-        ? `rotate(${(turn * shift) / DEGREE} ${x - v / turn} ${y + u / turn})` : `translate(${u * shift} ${v * shift})`;
+      turns[i] = Math.abs(turn) * box.size > TURNLESS ? (turn * shift) / DEGREE : 0;
+      places[i] = turns[i]
+        ? `rotate(${turns[i]} ${x - v / turn} ${y + u / turn})` : `translate(${u * shift} ${v * shift})`;
     });
     const wrong = new Set([...seen.overlaps.flat(), ...seen.loose]);
     state.blocks.forEach(({ corners, fixed }, i) => {
@@ -40,7 +42,7 @@ const ownPicture = (() => {
     });
     const chosen = state.blocks[state.chosen];
     chosen?.corners.forEach(([cx, cy], i) => add(turned, "circle", { cx, cy, r: 7 * pixel, class: "corner", "data-corner": i }));
-    arrow(turned, pixel, state, places[state.load.block]);
+    arrow(turned, pixel, state, places[state.load.block], turns[state.load.block]);
   }
 
   /** What joints carry: lines along the forces, as long and wide as these are large. */
@@ -56,11 +58,11 @@ const ownPicture = (() => {
     });
   }
 
-  /** The load: an arrow that ends where it acts. */
-  function arrow(turned, pixel, state, transform) {
+  /** The load: an arrow that ends where it acts; it stays upright, as a weight does. */
+  function arrow(turned, pixel, state, transform, turn) {
     const [x, y] = state.load.point;
     const high = 46 * pixel;
-    const upright = `translate(${x} ${y}) rotate(${state.tilt / DEGREE})`;
+    const upright = `translate(${x} ${y}) rotate(${state.tilt / DEGREE - turn})`;
     const group = add(add(turned, "g", { transform }), "g", { class: "load", transform: upright, "data-load": "" });
     add(group, "path", { d: `M0 ${high}V${8 * pixel}`, "stroke-width": state.load.share ? 3 : 1.5 });
     add(group, "path", { d: `M0 0L${5 * pixel} ${10 * pixel}H${-5 * pixel}Z`, class: "head" });
