@@ -13,7 +13,8 @@ from rocking import on_record
 from running import inside
 from structure_cases import case, scenes
 
-from blocksim import InputError, fragility, structure_of
+from blocksim import InputError, Verdict, fragility, structure_of
+from blocksim.view.style import VERDICTS
 
 NAME = "pulse_1x4_05"
 LEAST = float(case(NAME)["expected"]["least_duration_s"])
@@ -48,6 +49,7 @@ def test_a_curve_and_a_table_are_written(tmp_path: Path) -> None:
         ("4.0", "1.0"),
     ]
     assert 'id="falls"' in curve.read_text()
+    assert VERDICTS[Verdict.COLLAPSES] in curve.read_text()  # the colour of what falls
     said = json.loads(inside(*asked, *wide, "--json").stdout)
     assert [each["falls"] for each in said["rows"]] == [0.0, 1.0]
     assert said["verdicts"] == {str(record): ["stands", "collapses"]}

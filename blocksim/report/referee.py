@@ -25,7 +25,13 @@ from blocksim.suite.score import MOST, Row, Score
 
 LARGEST = 1 << 22
 """Bytes of a score.json."""
-MEDIANS = ("drift", "gain", "asymmetry", "error")
+MEDIANS = {
+    "drift": "drift",
+    "gain": "energy gained",
+    "asymmetry": "symmetry lost",
+    "error": "error in time",
+}
+"""Medians by their names in a score, and what they are called."""
 
 
 def known_scores() -> list[dict[str, Any]]:
@@ -55,12 +61,21 @@ def level_words(level: float | None) -> str:
     return "-" if level is None else f"{level:g} %"
 
 
+def _reach(record: Mapping[str, Any]) -> str:
+    """Say how near to the limit an engine is right."""
+    nearest = record["nearest_level"]
+    return "at no level" if nearest is None else f"to {level_words(nearest)} of the limit"
+
+
 def score_lines(record: Mapping[str, Any], known: Sequence[Mapping[str, Any]]) -> list[str]:
     """Tell a score in lines: the one number, then a line a group."""
     head = f"{record['engine']} {record['version']} ({record['settings']})"
     found = [
-        f"RIGHT TO {level_words(record['nearest_level'])} of the limit  ({head})",
-        f"  of all  {100 * (1 - record['wrong']):.1f} % right, in {record['seconds']:g} s",
+        f"RIGHT {_reach(record).upper()}  ({head})",
+        f"  means   {100 * MOST:g} % or more are right there and at all levels farther away",
+        f"  of all  {100 * (1 - record['wrong']):.1f} % right, in {record['seconds']:g} s; "
+        "what was not answered is not right",
+        "  groups  the level to which all are right, then how many are at each level",
     ]
     width = max(map(len, record["groups"]))
     for name, group in record["groups"].items():
@@ -70,14 +85,16 @@ def score_lines(record: Mapping[str, Any], known: Sequence[Mapping[str, Any]]) -
         ]
         nearest = level_words(group["nearest_level"])
         found.append(f"  {name:{width}}  {nearest:>6}  right  {', '.join(cells)}")
-    found += [
-        f"  {name:{width}}  {record[f'median_{name}']:g} in the median"
-        for name in MEDIANS
+    medians = [
+        f"{words} {record[f'median_{name}']:g}"
+        for name, words in MEDIANS.items()
         if record[f"median_{name}"] is not None
     ]
+    if medians:
+        found.append(f"  moved   medians, in sizes of the mean block: {', '.join(medians)}")
     found += [
         f"  beside  {each['engine']} {each['version']} ({each['settings']}): "
-        f"{level_words(each['nearest_level'])}, {100 * (1 - each['wrong']):.1f} % right"
+        f"right {_reach(each)}, {100 * (1 - each['wrong']):.1f} % of all"
         for each in known
     ]
     return found
