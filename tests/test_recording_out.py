@@ -65,7 +65,10 @@ def spatial(fall: Recording) -> Recording:
 
 @pytest.fixture(scope="session")
 def modules(pytestconfig: pytest.Config) -> Path:
-    """three.js and the validator, fetched once by npm as the lock file says."""
+    """three.js and the validator, fetched once by npm as the lock file says.
+
+    Only long tests ask the network, and none waits for it for long.
+    """
     npm = shutil.which("npm")
     if npm is None:
         pytest.skip("no npm here (apt-get install npm)")
@@ -74,7 +77,8 @@ def modules(pytestconfig: pytest.Config) -> Path:
         for name in ("package.json", "package-lock.json"):
             shutil.copy(HERE / name, folder)
         if not (folder / "node_modules" / "three" / "build").is_dir():
-            fetch = [npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund"]
+            quiet = ("--ignore-scripts", "--no-audit", "--no-fund")
+            fetch = [npm, "ci", *quiet, "--fetch-retries=1", "--fetch-timeout=60000"]
             done = subprocess.run(fetch, cwd=folder, capture_output=True, check=False)
             if done.returncode:
                 pytest.skip("npm fetches nothing here")
@@ -230,6 +234,7 @@ def test_times_that_a_float_cannot_tell_apart_are_left_out(fall: Recording) -> N
     assert (np.diff(kept) > 0).all()
 
 
+@pytest.mark.long
 def test_the_validator_finds_nothing(
     tmp_path: Path, modules: Path, fall: Recording, spatial: Recording
 ) -> None:
@@ -289,7 +294,8 @@ def viewer(browser: Any, modules: Path) -> Iterator[Any]:
     page.context.close()
 
 
-@pytest.mark.parametrize("kind", [pytest.param("planar", marks=pytest.mark.long), "spatial"])
+@pytest.mark.long
+@pytest.mark.parametrize("kind", ["planar", "spatial"])
 def test_blocks_are_in_three_js_where_they_were_recorded(
     viewer: Any, fall: Recording, spatial: Recording, kind: str
 ) -> None:
