@@ -2,9 +2,10 @@
 
 Question: what does an engine make of a collapse once blocks meet others, what they stand on and
 the floor? Twenty structures are drawn at random: arches below their least thickness, walls and
-columns on a table tilted beyond their limit, stacks that reach too far. Each is let go until
-the rubble lies still or `LONGEST` has passed. Measured from the recording's poses by a test of
-its own (separating axes of the true prisms, in space):
+columns on a table tilted beyond their limit, stacks that reach too far. With `--heaps` they
+are walls of 30 to 200 irregular stones on a table that tilts by 28 to 40 degrees. Each is let
+go until the rubble lies still or `LONGEST` has passed. Measured from the recording's poses by a
+test of its own (separating axes of the true prisms, in space):
 
 - `overlap`, the deepest of any two bodies, in units of the least width of the block;
 - `sunk`, how far a corner is below the floor;
@@ -16,19 +17,20 @@ The engine says of its own how deep blocks overlap and what energy was gained. A
 rise: the shoulders of an arch do, and the lowest block of a stack that tips over its edge does,
 for which others fall. One that flies higher than it was carried has been thrown.
 
-    python -m analysis.rubble OUT [--engine direct|pymunk|pybullet|mujoco] [--count N]
+    python -m analysis.rubble OUT [--engine direct|pymunk|pybullet|mujoco] [--count N] [--heaps]
 """
 
 from __future__ import annotations
 
-import itertools
 import math
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from analysis.command import run
@@ -37,6 +39,7 @@ from analysis.saved_answers import Row, answers
 from blocksim import (
     Arch,
     CircularArch,
+    InputError,
     Load,
     Problem,
     Recording,
@@ -51,6 +54,9 @@ from blocksim.engines.solids import Solids, width
 
 SEED = 16
 COUNT = 20
+KINDS, HEAPS = ("arch", "wall", "arch", "column", "stack"), ("heap",)
+FEWEST, MOST = 30, 200
+"""Stones of a heap."""
 LONGEST = 15.0
 """Time after which a run ends though something moves [sqrt(size/g)]."""
 ALLOWED, GAIN = 0.01, 1e-3
@@ -67,9 +73,8 @@ class Case:
     kind: str
 
 
-def cases(count: int) -> list[Case]:
+def cases(count: int, kinds: tuple[str, ...] = KINDS) -> list[Case]:
     """Name the structures, of each kind in turn."""
-    kinds = ("arch", "wall", "arch", "column", "stack")
     return [Case(number, kinds[number % len(kinds)]) for number in range(count)]
 
 
@@ -87,6 +92,13 @@ def drawn(case: Case) -> Problem:
             Arch(half_angle=half, eta=share * least, voussoirs=count), mu
         ).problem()
     mu = random.uniform(0.55, 0.8)
+    if case.kind == "heap":
+        # By the golden ratio: however many are drawn, few stones and many are among them.
+        share = (0.618034 * case.number) % 1.0
+        stones = round(FEWEST * (MOST / FEWEST) ** share)
+        table = {"stones": stones, "seed": case.number}
+        heap = structure_of({"kind": "rubble", "friction": mu, **table})
+        return heap.tilted(math.radians(random.uniform(28, 40)))
     if case.kind == "wall":
         courses, long = int(random.integers(6, 10)), random.uniform(0.3, 0.5)
         table = {
@@ -120,17 +132,24 @@ def ask(case: Case, engine: str) -> Row:
     """Let one fall, and measure."""
     problem = drawn(case)
     started = time.process_time()
-    recording = simulate(problem, method=engine, duration=LONGEST)
-    cpu_s = time.process_time() - started
-    return {
+    asked: Row = {
         "engine": engine,
         "kind": case.kind,
         "number": case.number,
         "blocks": len(problem.assembly.blocks),
+    }
+    try:
+        recording = simulate(problem, method=engine, duration=LONGEST)
+    except InputError as refusal:
+        return {**asked, "refused": str(refusal)}
+    cpu_s = time.process_time() - started
+    return {
+        **asked,
         "ended": float(recording.times[-1]),
         "rested": bool(recording.times[-1] < LONGEST - 0.1),
         **measured(recording),
         "own_overlap": recording.quality.penetration,
+        "own_overlap_of_smallest": recording.overlap_share,
         "own_gain": recording.quality.gain,
         "cpu_s": round(cpu_s, 2),
     }
@@ -157,7 +176,8 @@ def measured(recording: Recording) -> dict[str, float]:
             prism if body == SUPPORT else prism.at(pose[body])
             for prism, body in zip(prisms, owner, strict=True)
         ]
-        for one, other in itertools.combinations(range(len(placed)), 2):
+        near = meeting(placed)
+        for one, other in np.argwhere(np.triu(near)):
             if owner[one] == owner[other]:
                 continue
             least = widths[one] if owner[other] == SUPPORT else min(widths[one], widths[other])
@@ -166,9 +186,12 @@ def measured(recording: Recording) -> dict[str, float]:
         low = min(float(prism.corners[:, 1].min()) for prism in placed[: len(solids.moving)])
         sunk = max(sunk, level - low)
         for body in np.flatnonzero(above > highest):
-            own = [one for one, its in zip(placed, owner, strict=True) if its == body]
-            rest = [one for one, its in zip(placed, owner, strict=True) if its != body]
-            if all(reach(one, other) < -CLEAR for one in own for other in rest):
+            pairs = [
+                (placed[one], placed[other])
+                for one, other in np.argwhere(near)
+                if owner[one] == body != owner[other]
+            ]
+            if all(reach(one, other) < -CLEAR for one, other in pairs):
                 thrown = max(thrown, float(above[body] - highest[body]))
             else:
                 highest[body] = above[body]
@@ -230,6 +253,14 @@ class Prism:
         return Prism(corners, turned.apply(self.normals), turned.apply(self.edges))
 
 
+def meeting(prisms: Sequence[Prism]) -> NDArray[np.bool_]:
+    """Tell which of prisms have bounding boxes that are no more than `CLEAR` apart."""
+    low = np.array([prism.corners.min(axis=0) for prism in prisms]) - CLEAR
+    high = np.array([prism.corners.max(axis=0) for prism in prisms])
+    found = np.all(low[:, None] <= high, axis=2)
+    return found & found.T
+
+
 def overlap_of(one: Prism, other: Prism, least: float) -> float:
     """Return by how much two prisms overlap; 0 if apart, or by no more than `least`."""
     first, second = one.corners, other.corners
@@ -258,14 +289,15 @@ def main(
     quick: bool = False,
     engine: str = "direct",
     count: int = COUNT,
+    heaps: bool = False,
     processes: int = 1,
 ) -> list[Row]:
     """Let all fall, and write rows."""
-    asked = cases(2 if quick else count)
-    rows = answers(
-        out / f"rubble_{engine}.jsonl", asked, partial(ask, engine=engine), processes
-    )
-    write_rows(out / f"rubble_{engine}.csv", rows)
+    asked = cases(2 if quick else count, HEAPS if heaps else KINDS)
+    name = f"{'heaps' if heaps else 'rubble'}_{engine}"
+    rows = answers(out / f"{name}.jsonl", asked, partial(ask, engine=engine), processes)
+    columns = dict.fromkeys(column for row in rows for column in row)
+    write_rows(out / f"{name}.csv", [{**dict.fromkeys(columns), **row} for row in rows])
     return rows
 
 

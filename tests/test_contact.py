@@ -3,9 +3,11 @@
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial import ConvexHull
 
 from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.coulomb import Friction
+from blocksim.engines.contact.meeting import Polygons
 from blocksim.engines.contact.path_following import path_from_apart
 from blocksim.engines.contact.solver import ContactProblem
 from blocksim.engines.contact.step import Step
@@ -144,3 +146,39 @@ def test_the_path_from_apart_always_arrives(seed, blocks, mu):
     end = path_from_apart(step)
     assert step.residual(end.x, end.forces) < 1e-5
     assert 0 < end.systems < 40 * len(rows)
+
+
+def convex(random):
+    """The hull of a few random points, about the mean of its corners."""
+    points = random.normal(size=(random.integers(3, 9), 2)) * random.uniform(0.3, 1, 2)
+    corners = points[ConvexHull(points).vertices]
+    return corners - corners.mean(axis=0)
+
+
+def depth_in(corners, polygon):
+    """How far the deepest corner is inside a convex polygon; negative if none is inside."""
+    edges = np.roll(polygon, -1, axis=0) - polygon
+    off = corners[:, None] - polygon
+    heights = edges[:, 0] * off[..., 1] - edges[:, 1] * off[..., 0]
+    return float((heights / np.hypot(*edges.T)).min(axis=1).max())
+
+
+def test_a_corner_inside_a_polygon_is_a_contact():
+    """However many corners the other one has."""
+    random, count = np.random.default_rng(5), 2000
+    shapes = [convex(random) for _ in range(2 * count)]
+    poses = np.column_stack(
+        [random.normal(size=(2 * count, 2)), random.uniform(0, 6, 2 * count)]
+    )
+    one, other = np.arange(count), np.arange(count, 2 * count)
+    found = Polygons(shapes, []).touch(poses, one, other).gap.min(axis=1)
+    placed = [
+        corners @ np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+        + (x, y)
+        for corners, (x, y, turn) in zip(shapes, poses, strict=True)
+    ]
+    pairs = [(placed[a], placed[b]) for a, b in zip(one, other, strict=True)]
+    deepest = np.array([max(depth_in(a, b), depth_in(b, a)) for a, b in pairs])
+    inside = deepest > 1e-9
+    assert inside.sum() > 400
+    assert (found[inside] < 0).all()

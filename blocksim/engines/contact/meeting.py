@@ -125,6 +125,8 @@ class Polygons:
         other = np.concatenate([after, before])
         others = corners[other][:, None] - corners[owner][..., None]
         beyond = (others.conj() * faces[owner][..., None]).imag.min(axis=2)
+        # A face of no length is as far off as the one before it, but for round-off.
+        beyond[self._lengths[owner] == 0] = -np.inf
         return beyond.max(axis=1).reshape(2, -1), beyond.argmax(axis=1).reshape(2, -1)
 
     def _placed(self, poses: Array) -> tuple[Complex, Complex]:
