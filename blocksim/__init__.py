@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from blocksim.ask.cases import check_cases as check_cases
     from blocksim.ask.check import check as check
     from blocksim.ask.doctor import cite as cite
-    from blocksim.ask.fragility import Fragility as Fragility
-    from blocksim.ask.fragility import fragility as fragility
     from blocksim.ask.options import Options as Options
     from blocksim.ask.simulate import simulate as simulate
     from blocksim.blocks.assembly import Assembly as Assembly
@@ -91,6 +89,8 @@ if TYPE_CHECKING:
     from blocksim.simulation.recording import Recording as Recording
     from blocksim.simulation.verdict import Evidence as Evidence
     from blocksim.simulation.verdict import Verdict as Verdict
+    from blocksim.sweeps.fragility import Fragility as Fragility
+    from blocksim.sweeps.fragility import fragility as fragility
     from blocksim.sweeps.run import sweep as sweep
     from blocksim.sweeps.table import to_pandas as to_pandas
 
@@ -103,7 +103,7 @@ _PLACES = {
     "ask.answer": ("Check",),
     "ask.check": ("check",),
     "ask.doctor": ("cite",),
-    "ask.fragility": ("Fragility", "fragility"),
+    "sweeps.fragility": ("Fragility", "fragility"),
     "ask.options": ("Options",),
     "ask.simulate": ("simulate",),
     "blocks.assembly": ("Assembly", "Block", "Joint"),

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from blocksim.ask.fragility import fragility as find
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import read_table
 from blocksim.cli.acting import Loading
@@ -19,11 +18,12 @@ from blocksim.cli.curves import KINDS as CURVES
 from blocksim.cli.options import JSON, METHOD, SCENE, SET, named_options, settings_of
 from blocksim.cli.output import answer_with, picture_kind, progress, write_files
 from blocksim.cli.subject import problem_asked
-from blocksim.common.checks import require
+from blocksim.common.checks import Range, require
 from blocksim.common.sheets import write_sheet
 from blocksim.common.words import counted
 from blocksim.report.problems import problem_record
 from blocksim.simulation.verdict import Verdict
+from blocksim.sweeps.fragility import fragility as find
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -45,6 +45,10 @@ def fragility(
     out: list[Path] | None = option(
         "File to write: .csv with a row an amplitude, or a curve, .pdf, .svg, .png; repeatable."
     ),
+    rows: Path | None = option(
+        "Folder for the answers; one that has some is resumed.", folder=True
+    ),
+    workers: int = option("Processes.", default=1, range=Range(low=1, high=256, whole=True)),
     method: str = METHOD,
     settings: list[str] | None = SET,
     as_json: bool = JSON,
@@ -63,18 +67,20 @@ def fragility(
             problem,
             {name: read_table(name) for name in names},
             spaced,
+            folder=rows,
+            workers=workers,
             method=method,
             settings=settings_of(settings),
             progress=report,
         )
     shares = [found.share(each).tolist() for each in (Verdict.COLLAPSES, Verdict.UNDECIDED)]
-    rows = list(zip(found.amplitudes.tolist(), *shares, strict=True))
+    table = list(zip(found.amplitudes.tolist(), *shares, strict=True))
     headings = ["amplitude_g", "falls", "undecided"]
-    words = (f"{each[0]:13.4g}  {each[1]:5.0%}  {each[2]:9.0%}" for each in rows)
+    words = (f"{each[0]:13.4g}  {each[1]:5.0%}  {each[2]:9.0%}" for each in table)
     answer_with(
         lambda: {
             "problem": problem_record(problem),
-            "rows": [dict(zip(headings, row, strict=True)) for row in rows],
+            "rows": [dict(zip(headings, row, strict=True)) for row in table],
             "verdicts": dict(zip(found.records, found.verdicts, strict=True)),
         },
         lambda: [
@@ -84,8 +90,8 @@ def fragility(
         ],
         as_json=as_json,
     )
-    tables = {"csv": partial(write_sheet, names=headings, rows=rows)}
-    write_files(out or (), tables, lambda: _figure(problem, len(names), rows), silent=as_json)
+    tables = {"csv": partial(write_sheet, names=headings, rows=table)}
+    write_files(out or (), tables, lambda: _figure(problem, len(names), table), silent=as_json)
 
 
 def _spaced(low: float, high: float, count: int) -> list[float]:
