@@ -449,6 +449,20 @@ def test_a_table_of_pandas_is_that_of_the_csv(
 
 
 @pytest.mark.usefixtures("in_this_process")
+def test_a_tower_tilts_least_far_towards_its_shorter_side(tmp_path: Path) -> None:
+    """Two boxes overturn over an edge where gravity leaves their base; nothing slides."""
+    text = 'kind = "tower"\nblocks = 2\nturn_deg = 0\noffset = 0\nmu = 4\nmethod = "limit"\n'
+    asked = design_of(tmp_path, f'{text}over = "tilt"\nazimuth_deg = [0, 30, 60, 90, -135]')
+    sweep(asked, tmp_path / "rows")
+    for row in read_rows(tmp_path / "rows"):
+        towards = math.radians(float(str(row["azimuth_deg"])))
+        # Length, width and height of the two are 1, 0.6 and 0.6 m.
+        reach = min(0.5 / abs(math.cos(towards)), 0.3 / max(abs(math.sin(towards)), 1e-12))
+        assert math.tan(math.radians(float(str(row["limit"])))) == pytest.approx(reach / 0.3)
+    with pytest.raises(InputError, match=r"azimuth_deg.*in the plane"):
+        design_of(tmp_path, 'kind = "column"\nmu = 0.5\nazimuth_deg = 10')
+
+
 def test_a_kind_in_space_is_one_like_any_other(tmp_path: Path) -> None:
     """Two boxes stand up to half a length of offset, by statics of the upper one alone."""
     text = 'kind = "tower"\nblocks = 2\nturn_deg = 0\nmu = 0.6\nmethod = ["limit", "direct"]\n'

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from hashlib import blake2b
 from typing import (
     Any,
@@ -31,6 +32,7 @@ PLAIN = NEEDED | {"eta", "ratio"}
 ACTING = {
     "load": Field(about="factor on the live loads", range=FACTOR),
     "tilt_deg": Field(about="tilt of the table", range=TILT_DEG),
+    "azimuth_deg": Field(about="in space, towards where the table tilts", range=TILT_DEG),
     "amplitude_g": Field(about="how strongly the ground shakes", range=AMPLITUDE),
     "duration_s": Field(about="how long it shakes", range=DURATION),
 }
@@ -180,6 +182,9 @@ class Case(NamedTuple):
             return CircularArch(**given, friction=mu).problem()
         acting = {name: given.pop(name) for name in ACTING if name in given}
         problem = structure_of(self._table(given, mu, acting))
+        if problem.in_space:
+            azimuth = acting.get("azimuth_deg", 0.0)
+            problem = replace(problem, azimuth=math.radians(azimuth))
         return problem.tilted(math.radians(acting.get("tilt_deg", 0.0)))
 
     def _table(

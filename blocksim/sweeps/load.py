@@ -53,6 +53,7 @@ class DesignFile(How, Written):
     `mu`: Friction coefficient; inf allowed.
     `load`: Factor on the live loads.
     `tilt_deg`: Slope of the table [deg].
+    `azimuth_deg`: In space, towards where the table tilts, from x towards y [deg].
     `amplitude_g`, `duration_s`: How strongly [g] and how long [s] the ground shakes.
     `live`, `dead`, `move`, `density`, `shake`: What all structures have in common.
     """
@@ -61,6 +62,7 @@ class DesignFile(How, Written):
     kind: str = CircularArch.name
     load: AxisField | None = None
     tilt_deg: AxisField | None = None
+    azimuth_deg: AxisField | None = None
     amplitude_g: AxisField | None = None
     duration_s: AxisField | None = None
     live: Any = None
@@ -128,6 +130,8 @@ def design_of(table: Mapping[str, Any]) -> Design:
     _require_acting(design)
     for key in ("move", "shake") if kind.in_space else ():
         require(key not in design.rest, key, "given", f"left out: a {kind.name} is in space")
+    towards = kind.in_space or "azimuth_deg" not in axes
+    require(towards, "azimuth_deg", "given", f"left out: a {kind.name} is in the plane")
     _require_asked(design, kind)
     return design
 
