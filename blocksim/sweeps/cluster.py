@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 from collections.abc import Generator
 from concurrent.futures import Executor
@@ -26,6 +27,9 @@ def cluster(address: str) -> Generator[tuple[Executor, int]]:
         raise MissingPart("dask", "pip install 'blocksim[dask]'")
     from distributed import Client
 
+    # What is left of a connection when it is broken off is told there, by lines of its own.
+    for name in ("tornado.application", "distributed", "distributed.client"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     # One that is none leaves a client behind that complains when it is collected.
     known = re.fullmatch(r"(tcp://|tls://)?[^\s/]+:\d{1,5}", address) is not None
     require(known, "--scheduler", address, "the address of a dask scheduler, tcp://host:8786")
