@@ -363,8 +363,9 @@ def test_supports_that_move_are_recorded_until_all_has_fallen(
     goes = np.diff(apart)
     going = goes > goes[0] / 2
     assert goes[going] == pytest.approx(goes[0], rel=1e-6)
-    assert not goes[np.argmin(going) :].any()
-    assert np.abs(recording.poses[-40:] - recording.poses[-1]).max() < 2e-3
+    assert np.abs(goes[np.argmin(going) :]).max() < 1e-6 * goes[0]  # they stop
+    still = np.abs(recording.poses[-40:] - recording.poses[-1])[..., :2]
+    assert still.max() < 1e-3
     crown = recording.poses[:, 3, 1]
     moved = (apart - apart[0]) * size
     falls = moved[int(np.argmax(crown < crown[0] - 0.3))]
