@@ -8,6 +8,7 @@ import re
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from typing import Literal
 
 import av
 import numpy as np
@@ -131,6 +132,25 @@ def test_a_block_too_far_away_to_have_a_width_casts_no_shadow() -> None:
     frames = [Film([each], view="3d", height=120).frame(0) for each in (seen, fallen)]
     assert frames[0].std() > 1
     assert (frames[0] != frames[1]).any()
+
+
+def slid(way: float) -> Recording:
+    """The last block slides along the ground, by a way to the right of its place."""
+    moved = np.zeros((2, ARCH.voussoirs, 3))
+    moved[1, -1] = way, -DEPTH / 2, 0.0
+    return recording(moved, np.array([0.0, 1.0]))
+
+
+@pytest.mark.parametrize("view", ["2d", "3d"])
+def test_films_beside_each_other_have_one_scale(view: Literal["2d", "3d"]) -> None:
+    """At rest they are the same picture, whichever goes farther; alone they are not."""
+    near, far = slid(0.2), slid(1.2)
+    films = [Film([near], view=view, beside=[far]), Film([far], view=view, beside=[near])]
+    one, other, alone = (
+        film.frame(0)[100:600].astype(int) for film in (*films, Film([near], view=view))
+    )
+    assert np.abs(one - other).max() == 0
+    assert (np.abs(one - alone).max(axis=2) > 60).mean() > 0.01
 
 
 def test_a_film_ends_when_a_block_goes_into_a_footing() -> None:

@@ -36,8 +36,6 @@ PUSH = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3)
 """How far beyond an event it is looked at, the first that tells [size]."""
 WAY = 5e-3
 """Way of the fastest corner in one step of a fall [size]."""
-POSITIONS = 100
-"""On the way, at which events are looked for between."""
 FALLEN = 0.2
 """Way in a fall after which nothing is expected to hold the blocks [size]."""
 AHEAD = 1e-4
@@ -93,11 +91,12 @@ class Path:
         return next(falls, None)
 
 
-def follow(problem: Problem, highest: float) -> Path:
+def follow(problem: Problem, highest: float, steps: int = 100) -> Path:
     """Move the supports slowly, and follow the blocks.
 
     `problem`: In its plane, with `moves`.
     `highest`: How far the supports move at most [m].
+    `steps`: Positions on the way at which events are looked for between.
     """
     blocks = Displaced(problem)
     frame = blocks.start
@@ -107,7 +106,7 @@ def follow(problem: Problem, highest: float) -> Path:
     frame, lost = _follows(blocks, frame)
     events.append(Event(what="hinges", before=frames[0], after=frame))
     frames.append(frame)
-    grid = np.linspace(0, highest, POSITIONS + 1)[1:].tolist()
+    grid = np.linspace(0, highest, steps + 1)[1:].tolist()
     while lost is None and grid:
         ahead = blocks.carried(frame, grid[0])
         what, at = _first_event(blocks, frame, ahead)

@@ -65,10 +65,11 @@ class Start:
     power: float = 0.0
 
 
-def may_start(problem: Problem) -> Start:
+def may_start(problem: Problem, *, seconds: float = SECONDS) -> Start:
     """Tell whether blocks at rest may start to move, by Coulomb's law.
 
     `problem`: In its plane, with bounded friction.
+    `seconds`: Time after which it gives up.
     Raises `InputError`: If friction is unbounded: what the law says is a limit then, and no
         choice.
     """
@@ -79,7 +80,7 @@ def may_start(problem: Problem) -> Start:
         forces = np.zeros((len(problem.assembly.joints), 2, 2))
     found: list[Start] = []
     for group in groups_of(problem):
-        start = _of_group(_Law(group.problem))
+        start = _of_group(_Law(group.problem), seconds)
         found.append(start)
         if start.accelerations is not None and start.forces is not None:
             unit = group.problem.unit_force / problem.unit_force
@@ -91,7 +92,7 @@ def may_start(problem: Problem) -> Start:
     return Start(moves=False if all(each.moves is False for each in found) else None)
 
 
-def _of_group(law: _Law) -> Start:
+def _of_group(law: _Law, seconds: float) -> Start:
     """Tell whether blocks of a group may start to move."""
     if not law.fall:
         return Start(moves=False)
@@ -103,7 +104,7 @@ def _of_group(law: _Law) -> Start:
         law.bounds,
         whole=law.whole,
         gap=least / 2 * law.fall,
-        seconds=SECONDS,
+        seconds=seconds,
     )
     power = float(-law.cost @ found.values) / law.fall if found.values.size else 0.0
     if power > least:

@@ -58,6 +58,8 @@ class Film:
         six seconds.
     `height`: Of a frame [pixels]; it is 16:9.
     `rate`: Frames in a second.
+    `beside`: Shown in other films beside this one: there is room for them, too, so that all
+        have one scale.
 
     It has:
     `width`, `height`: Both even, as video asks for.
@@ -80,6 +82,7 @@ class Film:
         slow: float | None = None,
         height: int = TALL,
         rate: int = 30,
+        beside: Sequence[Recording] = (),
     ) -> None:
         self.height = 2 * (height // 2)
         self.width = 2 * round(height * 8 / 9)
@@ -101,9 +104,8 @@ class Film:
         self._panels = self._arrange()
         kind: Any = PlanarView if self._flat else SpatialView
         # One scale for all, so that they can be compared.
-        shown = np.concatenate(
-            [stage.swept - [stage.middle, 0.0, 0.0] for stage in self._stages]
-        )
+        framed = [*self._stages, *map(stage_of, beside)]
+        shown = np.concatenate([stage.swept - [stage.middle, 0.0, 0.0] for stage in framed])
         self._views: list[View] = [
             kind(stage, panel, shown)
             for stage, panel in zip(self._stages, self._panels, strict=True)
