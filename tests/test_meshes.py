@@ -94,7 +94,17 @@ def flat() -> Any:
     return made
 
 
+def facet(corner: int) -> bytes:
+    """Return a mesh as text with one facet, of its first two corners and another."""
+    head = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    rows = f"0 0 0\n1 0 0\n0 1 0\n3 0 1 {corner}\n"
+    of_facets = "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    return f"ply\nformat ascii 1.0\n{head}{of_facets}{rows}".encode()
+
+
 BROKEN = {
+    "beyond.ply": (lambda: facet(3), "corner 3 of a facet': must be 0 to 2"),
+    "before.ply": (lambda: facet(-1), "corner -1 of a facet': must be 0 to 2"),
     "open.stl": (lambda: box(faces=slice(1, None)), "open at 3 edges"),
     "flat.stl": (flat, "a flat hull"),
     "ring.ply": (lambda: trimesh.creation.annulus(0.5, 1, 0.3, sections=8), "dented"),

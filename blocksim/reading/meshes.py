@@ -131,6 +131,9 @@ def _objects(content: bytes, ending: str) -> Iterator[tuple[str, Array, Facets]]
     ends = np.cumsum([len(mesh.vertices) for mesh in meshes])[:-1]
     for at, (mesh, each) in enumerate(zip(meshes, np.split(points, ends), strict=True)):
         own, place = np.unique(each, axis=0, return_inverse=True)
+        for corner in (int(mesh.faces.min(initial=0)), int(mesh.faces.max(initial=0))):
+            known = 0 <= corner < max(1, len(each))
+            require(known, "mesh", f"corner {corner} of a facet", f"0 to {len(each) - 1}")
         name, before = names[at], names[:at].count(names[at])
         yield f"{name}-{before + 1}" if before else name, own, place.ravel()[mesh.faces]
 
