@@ -14,8 +14,7 @@ from running import inside
 from scipy.integrate import quad
 from scipy.optimize import linprog
 
-from blocksim import Arcade, CircularArch
-from blocksim.kinds.arcade import Pier, Span
+from blocksim import structure_of
 
 BIG = Bridge(span=6.0, rise=3.0, thick=0.5, count=20, fill=0.5)
 SMALL = Bridge(span=4.0, rise=2.0, thick=0.4, count=14, fill=0.5 + 3.5 - 2.4)
@@ -109,37 +108,30 @@ def test_two_unequal_spans_on_a_pier(tmp_path: Path, place: float) -> None:
     assert found == pytest.approx(own_factor(place, 50.0), rel=1e-6)
 
 
+ALIKE = {
+    "kind": "arcade",
+    "arch": {"kind": "circular-arch", "span": 6, "rise": 2, "thickness": 0.4, "fill": 0.3},
+    "spans": 3,
+    "pier_width": 1.0,
+    "friction": 0.7,
+    "density": 2e4,
+}
+"""Three spans that are alike."""
+
+
 def test_equal_tables_are_the_arcade_without_them() -> None:
-    arch = CircularArch(span=6.0, rise=2.0, thickness=0.4, fill=0.3)
-    plain = Arcade(arch=arch, spans=3, pier_width=1.0, friction=0.7, density=2e4).problem()
-    told = Arcade(
-        arch=arch,
-        spans=3,
-        pier_width=1.0,
-        each_span=(Span(), Span(span=6.0, rise=2.0)),
-        each_pier=(Pier(width=1.0), Pier(height=3.0)),
-        friction=0.7,
-        density=2e4,
-    ).problem()
+    plain = structure_of(ALIKE)
+    spans, piers = [{}, {"span": 6.0, "rise": 2.0}], [{"width": 1.0}, {"height": 3.0}]
+    told = structure_of({**ALIKE, "each_span": spans, "each_pier": piers})
     assert len(told.assembly.joints) == len(plain.assembly.joints)
     assert told.applied_forces() == pytest.approx(plain.applied_forces(), rel=1e-9, abs=1e-12)
 
 
 def test_piers_and_fill_of_their_own() -> None:
     """Weights by hand: piers, fill of another density over one span up to the same road."""
-    arch = CircularArch(span=6.0, rise=2.0, thickness=0.4, fill=0.3)
-    rows = (Span(fill_density=0.5), Span(), Span(span=4.0, rise=1.5))
-    piers = (Pier(width=1.0, height=2.0), Pier(width=1.5, height=4.0))
-    made = Arcade(
-        arch=arch,
-        spans=3,
-        pier_width=1.0,
-        each_span=rows,
-        each_pier=piers,
-        friction=0.7,
-        density=2e4,
-    )
-    problem = made.problem()
+    spans = [{"fill_density": 0.5}, {}, {"span": 4.0, "rise": 1.5}]
+    piers = [{"width": 1.0, "height": 2.0}, {"width": 1.5, "height": 4.0}]
+    problem = structure_of({**ALIKE, "each_span": spans, "each_pier": piers})
     weights = {block.name: block.mass * 9.81 / 1e3 for block in problem.assembly.blocks}
     assert weights["pier 1 1"] == pytest.approx(20 * 1.0 * 2.0)
     assert weights["pier 2 1"] == pytest.approx(20 * 1.5 * 4.0)

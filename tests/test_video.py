@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matplotlib.colors import to_rgb
 from PIL import Image
 from recorded import drawn_words, recorded
 from running import inside
@@ -28,6 +29,7 @@ from blocksim.view.canvas import Canvas, Panel, Shape
 from blocksim.view.film import Film
 from blocksim.view.planar import PlanarView
 from blocksim.view.stage import SUNK, Stage
+from blocksim.view.style import JOINTS, THRUST
 from blocksim.view.timeline import SEEN
 from blocksim.view.video import render
 
@@ -390,6 +392,30 @@ def hinged() -> Recording:
         ]
     )
     return recording(moved, times)
+
+
+def test_gif_keeps_the_colours_that_say_something(tmp_path: Path) -> None:
+    """Hinges at either end and the line of thrust: each its own colour in every frame.
+
+    In perspective: there hundreds of shades of stone and ground want a place, too.
+    """
+    render([hinged()], tmp_path / "film.gif", view="3d", slow=1, height=360)
+    told = {
+        "extrados": JOINTS[JointState.HINGE_EXTRADOS],
+        "intrados": JOINTS[JointState.HINGE_INTRADOS],
+        "thrust": THRUST,
+    }
+    seen = dict.fromkeys(told, 0)
+    with Image.open(tmp_path / "film.gif") as picture:
+        for number in range(picture.n_frames):
+            picture.seek(number)
+            decoded = np.asarray(picture.convert("RGB")).astype(int)
+            legend = decoded[-24:]
+            for name, tone in told.items():
+                wanted = np.array(to_rgb(tone)) * 255
+                off = np.abs(legend - wanted).max(axis=-1)
+                seen[name] += int((off <= 6).sum() >= 20)
+    assert set(seen.values()) == {picture.n_frames}
 
 
 def test_lengths_and_times_have_units_where_a_radius_was_given() -> None:
