@@ -77,6 +77,26 @@ def test_while_a_string_runs(tmp_path: Path) -> None:
     assert (ended.returncode, ended.stderr) == (CODES[signal.SIGTERM], LINE)
 
 
+def test_while_python_calls_back(tmp_path: Path) -> None:
+    """Python drops what is raised there, and says so in four lines."""
+    (tmp_path / "program.py").write_text(
+        "import blocksim.cli as cli, os, sys, weakref\n"
+        "def work():\n"
+        "    class Thing: pass\n"
+        "    thing = Thing()\n"
+        "    kept = weakref.ref(thing, lambda _: os.kill(os.getpid(), 15))\n"
+        "    del thing\n"
+        "    while True: pass\n"
+        "cli.run = work\n"
+        "sys.argv, sys.orig_argv = ['blocksim'], ['blocksim']\n"
+        "cli.main()"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-m", "program"], cwd=tmp_path, capture_output=True, check=False
+    )
+    assert (ended.returncode, ended.stderr) == (CODES[signal.SIGTERM], LINE)
+
+
 MOMENT = ("sweep", 0.5, signal.SIGINT)
 """test_processes has one of `validate`, with workers that are at work."""
 

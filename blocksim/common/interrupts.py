@@ -12,6 +12,7 @@ import time
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from sys import UnraisableHookArgs
     from types import TracebackType
 
 SIGINT, SIGTERM = 2, 15
@@ -19,6 +20,8 @@ CODES = {SIGINT: 130, SIGTERM: 143}
 """As a shell says it."""
 TWICE = 1.0
 """Seconds in which the same wish counts once: `timeout` sends its signal twice."""
+AGAIN = 0.01
+"""Seconds after which it is told again what Python could not raise."""
 
 
 class _State:
@@ -47,7 +50,7 @@ def is_program() -> bool:
 def install() -> None:
     """Take both signals; before there is any work they end the process at once."""
     # The import of signals takes a while, too.
-    sys.excepthook = _say_unless_interrupted
+    sys.excepthook, sys.unraisablehook = _say_unless_interrupted, _tell_again
     if not any("multiprocessing" in word for word in sys.orig_argv):
         _State.program = os.getpid()
     import signal
@@ -61,7 +64,7 @@ def done() -> None:
     if os.getpid() == _State.program:
         import signal
 
-        for number in CODES:
+        for number in (*CODES, signal.SIGALRM):
             signal.signal(number, signal.SIG_IGN)
 
 
@@ -135,3 +138,21 @@ def _say_unless_interrupted(
     if issubclass(kind, KeyboardInterrupt):
         _end(_State.code or CODES[SIGINT])
     sys.__excepthook__(kind, error, trace)
+
+
+def _tell_again(lost: UnraisableHookArgs) -> None:
+    """Tell it once more, a moment later, where it came in a callback: Python drops it there."""
+    if not issubclass(lost.exc_type, KeyboardInterrupt):
+        sys.__unraisablehook__(lost)
+        return
+    import signal
+
+    signal.signal(signal.SIGALRM, _again)
+    signal.setitimer(signal.ITIMER_REAL, AGAIN)
+
+
+def _again(*_: object) -> None:
+    if not _State.working:
+        _end(_State.code)
+    if not _State.waiting:
+        raise KeyboardInterrupt
