@@ -63,30 +63,28 @@ def test_while_it_starts(delay: float, sent: signal.Signals) -> None:
     interrupted(imports, delay, sent, "bracket", *ARCH, *SLOW)
 
 
-def test_while_a_string_runs(tmp_path: Path) -> None:
-    """Python would end by SIGINT, whichever signal came."""
-    (tmp_path / "program.py").write_text(
-        "import blocksim.cli as cli, sys\n"
-        "cli.run = lambda: exec('import os; os.kill(os.getpid(), 15)')\n"
-        "sys.argv, sys.orig_argv = ['blocksim'], ['blocksim']\n"
-        "cli.main()"
-    )
-    ended = subprocess.run(
-        [sys.executable, "-m", "program"], cwd=tmp_path, capture_output=True, check=False
-    )
-    assert (ended.returncode, ended.stderr) == (CODES[signal.SIGTERM], LINE)
+CALLS_BACK = """
+    class Thing: pass
+    thing = Thing()
+    kept = weakref.ref(thing, lambda _: os.kill(os.getpid(), 15))
+    del thing
+    while True: pass
+"""
 
 
-def test_while_python_calls_back(tmp_path: Path) -> None:
-    """Python drops what is raised there, and says so in four lines."""
+@pytest.mark.parametrize(
+    "work",
+    [
+        # Python would end by SIGINT, whichever signal came.
+        pytest.param("exec('import os; os.kill(os.getpid(), 15)')", id="a string runs"),
+        # Python drops what is raised there, and says so in four lines.
+        pytest.param(CALLS_BACK, id="Python calls back"),
+    ],
+)
+def test_while(work: str, tmp_path: Path) -> None:
     (tmp_path / "program.py").write_text(
         "import blocksim.cli as cli, os, sys, weakref\n"
-        "def work():\n"
-        "    class Thing: pass\n"
-        "    thing = Thing()\n"
-        "    kept = weakref.ref(thing, lambda _: os.kill(os.getpid(), 15))\n"
-        "    del thing\n"
-        "    while True: pass\n"
+        f"def work(): {work}\n"
         "cli.run = work\n"
         "sys.argv, sys.orig_argv = ['blocksim'], ['blocksim']\n"
         "cli.main()"

@@ -29,7 +29,6 @@ from blocksim import (
     simulate,
     structure_of,
 )
-from blocksim import simulate as simulate_problem
 from blocksim.blocks.assembly import SPATIAL
 from blocksim.engines.base import Engine
 from blocksim.simulation.observation import hold, observe
@@ -205,7 +204,7 @@ def test_an_arch_that_falls_stays_symmetric_and_falls_as_pymunk_has_it() -> None
     """
     problem = CircularArch.of(arch_at(0.93, 90, 0.7, 9), 0.7).problem()
     bullet, fine = (
-        simulate_problem(problem, method=name, duration=2.0, settings=settings)
+        simulate(problem, method=name, duration=2.0, settings=settings)
         for name, settings in (("pybullet", {}), ("pymunk", {"step": 0.002}))
     )
     fallen, known = (run.poses[-1, :, :2] - run.poses[0, :, :2] for run in (bullet, fine))
@@ -222,12 +221,12 @@ def test_blocks_let_go_start_neither_early_nor_late() -> None:
     floor = {"id": 0, "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]], "fixed": True}
     slab = {"id": 1, "vertices": [[0, 0], [1, 0], [1, 0.2], [0, 0.2]]}
     slope = structure_of({"friction": 0.2, "blocks": [floor, slab]}).tilted(math.pi / 6)
-    slides = simulate_problem(slope, method="pybullet", duration=1.0)
+    slides = simulate(slope, method="pybullet", duration=1.0)
     pull = math.sin(math.pi / 6) - 0.2 * math.cos(math.pi / 6)
     assert slides.displacement == pytest.approx(pull * slides.times**2 / 2, rel=1e-4, abs=1e-6)
     arch = CircularArch.of(Arch(half_angle=math.pi / 2, eta=0.1, voussoirs=13), 0.7).problem()
     one, other = (
-        simulate_problem(arch, method=method, duration=1.5) for method in ("pybullet", "pymunk")
+        simulate(arch, method=method, duration=1.5) for method in ("pybullet", "pymunk")
     )
     for level in (2e-3, 1e-2, 5e-2):
         early, late = (

@@ -48,10 +48,9 @@ def static_evidence(
     problem: Problem[Any], static: Equilibrium | SpatialEquilibrium
 ) -> tuple[Evidence, ...]:
     """Say what limit analysis found."""
-    if not problem.in_space and isinstance(static, Equilibrium):
+    if isinstance(static, Equilibrium):
         found = Evidence("limit analysis", _words(static))
         return (found, *closing_of_verdict(problem, stands=static.exists))
-    assert not isinstance(static, Equilibrium)  # noqa: S101
     return (Evidence("limit analysis", _words_in_space(static)),)
 
 

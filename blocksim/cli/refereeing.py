@@ -10,7 +10,7 @@ from blocksim.cli.arguments import NEEDED, argument, option
 from blocksim.cli.options import JSON, require_given
 from blocksim.cli.output import answer_with, say
 from blocksim.common.checks import require
-from blocksim.common.errors import perhaps
+from blocksim.common.errors import InputError, perhaps
 from blocksim.report.referee import known_scores, read_score, score_lines, write_score
 from blocksim.suite.answers import read_answers, recording_of
 from blocksim.suite.export import chosen, questions
@@ -72,9 +72,8 @@ def replay(
     head, said = read_answers(answers, {name: each.scene for name, each in asked.items()})
     require(scene in said, "SCENE", scene, f"one that is answered{perhaps(scene, said)}")
     question = asked[scene]
-    allowed = "a scene that asks whether blocks stand"
-    require(isinstance(question, Question), "SCENE", scene, allowed)
-    assert isinstance(question, Question)  # noqa: S101
+    if not isinstance(question, Question):
+        raise InputError("SCENE", scene, "a scene that asks whether blocks stand")
     recording = recording_of(head, said[scene], question)
     recording.save(out)
     truth = "stands" if question.stands else "falls"

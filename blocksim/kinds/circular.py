@@ -220,7 +220,7 @@ class CircularArch(CurvedArch):
     @cached_property
     def shape(self) -> Arch | None:
         """The symmetric arch it is; None where it is none, or its joints are not radial."""
-        angle, eta = self.half_angle, self.eta
+        angle = self.half_angle
         if angle is None:
             angle = math.radians(self.left_deg)
             equal = self.left_deg == self.right_deg and HALF_ANGLE.has(angle)
@@ -228,8 +228,7 @@ class CircularArch(CurvedArch):
                 return None
         if self.weight not in WEIGHTS or self.joints == "vertical":
             return None
-        if eta is None:
-            eta = self.thickness / self.radius
+        eta = self.thickness / self.radius if self.eta is None else self.eta
         return Arch(
             half_angle=angle,
             eta=min(ETA.high, eta) if self.span is not None else eta,

@@ -1,9 +1,8 @@
-"""What the page on one structure says: dimensions, assumptions, factors, forces, joints."""
+"""What the page on one structure says: dimensions, assumptions, factors, thrust."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -16,20 +15,16 @@ from blocksim.blocks.maker import Kind
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import fill_of
 from blocksim.common.fields import fields_of
-from blocksim.limit import in_world, reactions
 from blocksim.limit.carried import Carried
 from blocksim.report.problems import weighed_arch
+from blocksim.report.sheettables import percent
 from blocksim.view.arrows import forces_of
 from blocksim.view.dimensions import Angle, dimensions_of
 from blocksim.view.sheet import LARGEST, Sheet
 from blocksim.view.solidscene import moving_box
-from blocksim.view.thrustlines import is_chained, thrust_of
+from blocksim.view.thrustlines import thrust_of
 from blocksim.view.units import ForceUnit, common_depth, length_words, unit_weight
 
-MOST = 60
-"""Joints in the table; of more, those that are used most."""
-MANY_SUPPORTS = 12
-"""Supports in the table of reactions."""
 MEASURED = ("thickness", "voussoirs", "depth", "radius", "left_deg", "right_deg")
 """Parameters of a circular arch that its dimensions say."""
 CUBIC = "kN/m\N{SUPERSCRIPT THREE}"
@@ -41,20 +36,6 @@ class Fact(NamedTuple):
     name: str
     value: str
     note: str = ""
-
-
-@dataclass(frozen=True, kw_only=True)
-class JointRow:
-    """What a joint carries, as the table says it."""
-
-    name: str
-    normal: str
-    friction: str
-    friction_used: str
-    worst: bool
-    eccentricity: str = ""
-    stress: str = ""
-    width_used: str = ""
 
 
 def built_facts(sheet: Sheet) -> list[Fact]:
@@ -282,70 +263,6 @@ def thrust_facts(sheet: Sheet) -> list[Fact]:
         safest = thrust_of(problem, carried.forces, carried.joint)
         facts.append(Fact("thrust at greatest margin", unit.words(safest), f"at joint {name}"))
     return facts
-
-
-def reaction_table(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
-    """Return headings and rows of reactions: by support, in each state, across and up."""
-    carried, problem = sheet.carried, sheet.problem
-    if carried is None or not carried.stands or carried.forces is None:
-        return [], []
-    columns = [("greatest margin", carried.forces)]
-    if is_chained(problem):
-        for name, end in (
-            ("greatest thrust", carried.greatest),
-            ("least thrust", carried.least),
-        ):
-            if end is not None and end.forces is not None:
-                columns.insert(0, (name, end.forces))
-    borne = [reactions(problem, forces) for _, forces in columns]
-    if len({len(each) for each in borne}) != 1 or len(borne[0]) > MANY_SUPPORTS:
-        return [], []
-    rows = [
-        [first.name]
-        + [
-            sheet.unit.number(float(part))
-            for each in borne
-            for part in in_world(problem, each[place].force)
-        ]
-        for place, first in enumerate(borne[0])
-    ]
-    return [name for name, _ in columns], rows
-
-
-def joint_rows(sheet: Sheet) -> list[JointRow]:
-    """Tell what joints carry in the state of greatest margin, in their order."""
-    carried, problem, unit = sheet.carried, sheet.problem, sheet.unit
-    found = None if carried is None else carried.resultants
-    if found is None:
-        return []
-    joints = problem.assembly.joint_arrays
-    middle = joints.ends.mean(axis=1) * problem.assembly.size
-    off = ((found.point - middle) * joints.tangent).sum(axis=1)
-    chosen = np.sort(np.argsort(-found.used, kind="stable")[:MOST])
-    names, worst = joint_names(problem.assembly), int(found.used.argmax())
-    known = problem.weighed and problem.has_size
-    return [
-        JointRow(
-            name=names[k],
-            normal=unit.number(float(found.normal[k])),
-            friction=unit.number(float(found.friction[k])),
-            eccentricity="-" if np.isnan(off[k]) else f"{1e3 * off[k] + 0.0:.0f}",
-            stress=_stress(float(found.stress[k])) if known else "-",
-            width_used=percent(float(found.width_used[k])),
-            friction_used=percent(float(found.friction_used[k])),
-            worst=k == worst,
-        )
-        for k in map(int, chosen)
-    ]
-
-
-def _stress(pascal: float) -> str:
-    return "-" if math.isnan(pascal) else f"{pascal / 1e6:.3g}"
-
-
-def percent(share: float) -> str:
-    """Return a share in per cent."""
-    return f"{100 * share:.1f}\N{NO-BREAK SPACE}%"
 
 
 def force_words(unit: ForceUnit) -> str:

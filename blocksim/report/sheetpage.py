@@ -21,19 +21,22 @@ from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_picture
 from blocksim.report.motion import mechanism_drawing
 from blocksim.report.sheetfacts import (
-    MOST,
     Fact,
     assumptions,
     built_facts,
     factor_facts,
     force_words,
     given_facts,
-    joint_rows,
-    reaction_table,
     road_facts,
     thrust_facts,
 )
-from blocksim.report.solidfacts import solid_joints, solid_reactions
+from blocksim.report.sheettables import (
+    MOST,
+    joint_rows,
+    reaction_table,
+    solid_joints,
+    solid_reactions,
+)
 from blocksim.simulation.verdict import Verdict, reason_of
 from blocksim.view.drawing import save_figure, state_of_any, words_of
 from blocksim.view.sheet import Sheet, Titles, answer_sheet

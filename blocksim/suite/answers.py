@@ -178,9 +178,9 @@ def recording_of(head: Head, answer: Answer, question: Question) -> Recording[An
         If the engine gave a verdict without poses.
     """
     poses, problem = answer.poses, question.problem
-    allowed = "a scene answered by poses: a verdict alone shows no motion"
-    require(poses is not None, "scene", answer.scene, allowed)
-    assert poses is not None  # noqa: S101
+    if poses is None:
+        allowed = "a scene answered by poses: a verdict alone shows no motion"
+        raise InputError("scene", answer.scene, allowed)
     size = problem.assembly.size
     if problem.in_space:
         # Ours have the real part last.
