@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from analysis.rows import provenance
-from blocksim.common.processes import crew
+from blocksim.common.processes import Hands
 
 Case = TypeVar("Case")
 Row = dict[str, float | int | str | bool | None]
@@ -43,7 +43,7 @@ def answers(
             for case in left:
                 keep(case, ask(case))
         else:
-            with crew(processes) as pool:
+            with Hands(processes) as pool:
                 asked = {pool.submit(ask, case): case for case in left}
                 for future in as_completed(asked):
                     keep(asked[future], future.result())

@@ -136,7 +136,7 @@ class Nursery:
         shutil.rmtree(self._place, ignore_errors=True)
 
     def run(self, arguments: Sequence[str], cwd: Path, **more: Any) -> Ended:
-        """Run a command in a folder and watch it."""
+        """Run a command in a folder, a file there called `stdin` piped to it, and watch it."""
         asked = {"arguments": list(arguments), "cwd": str(cwd), "place": str(self._place)}
         assert self._process.stdin is not None
         assert self._process.stdout is not None
@@ -226,7 +226,7 @@ def _become(asked: dict[str, Any], place: Path, temporary: Path) -> None:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_AS, (ROOM, ROOM))
     for number, name, flags in (
-        (0, os.devnull, os.O_RDONLY),
+        (0, "stdin" if Path("stdin").is_file() else os.devnull, os.O_RDONLY),
         (1, str(place / "out"), os.O_WRONLY | os.O_CREAT | os.O_TRUNC),
         (2, str(place / "err"), os.O_WRONLY | os.O_CREAT | os.O_TRUNC),
     ):

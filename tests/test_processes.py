@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 from running import alive, children, started, until
 
-from blocksim.common.processes import crew
+from blocksim.common.processes import Hands
 
 
 def test_work_that_is_broken_off_ends_at_once() -> None:
-    with pytest.raises(KeyboardInterrupt), crew(2) as executor:  # noqa: PT012
-        long = [executor.submit(time.sleep, 3600) for _ in range(5)]
+    with pytest.raises(KeyboardInterrupt), Hands(2) as hands:  # noqa: PT012
+        long = [hands.submit(time.sleep, 3600) for _ in range(5)]
         until(lambda: long[0].running() and len(active_children()) == 2)
         raise KeyboardInterrupt
     until(lambda: not active_children())
@@ -23,8 +23,9 @@ def test_work_that_is_broken_off_ends_at_once() -> None:
 
 
 def test_work_that_is_done_is_had() -> None:
-    with crew(2) as executor:
-        assert list(executor.map(abs, range(-3, 0))) == [3, 2, 1]
+    with Hands(2) as hands:
+        asked = [hands.submit(abs, each) for each in range(-3, 0)]
+        assert [each.result() for each in asked] == [3, 2, 1]
     until(lambda: not active_children())
 
 

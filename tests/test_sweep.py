@@ -306,11 +306,11 @@ def test_a_case_that_kills_its_process_becomes_a_row(
 
     made: list[Executor] = []
 
-    def processes(_: object) -> Executor:
+    def processes(*_: object, **_others: object) -> Executor:
         made.append(Fragile(poison, error))
         return made[-1]
 
-    monkeypatch.setattr("blocksim.common.processes.Crew", processes)
+    monkeypatch.setattr("blocksim.common.processes.ProcessPoolExecutor", processes)
     done = sweep(design_of(tmp_path, GRID), tmp_path)
     rows = rows_of(tmp_path)
     lost = [row for row in rows.values() if row["error"] is not None]

@@ -13,7 +13,7 @@ import threading
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, Future
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
@@ -124,9 +124,9 @@ def check_batches(
     `friction`, `workers`: As of `check_many`.
     """
     count = workers or os.cpu_count() or 1
-    pool, coming = _Pool(count), _Coming(batches)
     handed = deque[tuple[tuple[Structure, ...], Future[list[Told]]]]()
-    try:
+    with Hands(count) as hands, closing(_Coming(batches)) as coming:
+        pool = _Pool(count, hands)
         while coming.more or handed:
             while coming.more and len(handed) < AHEAD * count:
                 batch = coming.next(wait=not handed)
@@ -140,9 +140,6 @@ def check_batches(
                 yield from found.result()
             except BrokenExecutor:
                 yield from _one_by_one(batch, friction)
-    finally:
-        coming.end()
-        pool.hands.leave()
 
 
 class _Coming:
@@ -175,7 +172,7 @@ class _Coming:
         self.more = found is not None
         return found
 
-    def end(self) -> None:
+    def close(self) -> None:
         """Read no more."""
         self._ended.set()
         with suppress(Empty):
@@ -186,8 +183,8 @@ class _Coming:
 class _Pool:
     """Processes that are started once more than a few structures came."""
 
-    def __init__(self, count: int) -> None:
-        self._count, self._seen, self.hands = count, 0, Hands(count)
+    def __init__(self, count: int, hands: Hands) -> None:
+        self._count, self._seen, self._hands = count, 0, hands
 
     def submit(
         self, batch: tuple[Structure, ...], friction: float | None
@@ -199,24 +196,21 @@ class _Pool:
             done.set_result(_answered(batch, friction))
             return done
         try:
-            return self.hands.submit(_answered, batch, friction)
+            return self._hands.submit(_answered, batch, friction)
         except BrokenExecutor:
-            self.hands.renew()
-            return self.hands.submit(_answered, batch, friction)
+            self._hands.renew()
+            return self._hands.submit(_answered, batch, friction)
 
 
 def _one_by_one(batch: tuple[Structure, ...], friction: float | None) -> Iterator[Told]:
     """Answer structures in a process of their own, which may die of one."""
-    own = Hands(1)
-    try:
+    with Hands(1) as own:
         for each in batch:
             try:
                 yield own.submit(_told, each, friction).result()
             except BrokenExecutor:
                 yield Told(error="the process that answered it died: is there enough memory?")
                 own.renew()
-    finally:
-        own.leave()
 
 
 def _answered(batch: tuple[Structure, ...], friction: float | None) -> list[Told]:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Generator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import active_children, get_context, parent_process
-from typing import ParamSpec, TypeVar
+from typing import ParamSpec, Self, TypeVar
 
 from blocksim.common.interrupts import KeptBack
 
@@ -19,77 +19,51 @@ Asked = ParamSpec("Asked")
 Found = TypeVar("Found")
 
 
-class Crew(ProcessPoolExecutor):
-    """An executor of that many processes, started as they are needed, that can end at once."""
-
-    def __init__(self, count: int) -> None:
-        self._others = set(active_children())
-        # spawn: engines are libraries with state of their own, which fork would share.
-        super().__init__(count, mp_context=get_context("spawn"), initializer=_begin)
-
-    def submit(
-        self,
-        fn: Callable[Asked, Found],
-        /,
-        *args: Asked.args,
-        **kwargs: Asked.kwargs,
-    ) -> Future[Found]:
-        """Hand out work, for which a process may be started."""
-        with _undisturbed():
-            return super().submit(fn, *args, **kwargs)
-
-    def end(self) -> None:
-        """End all work, unfinished as it is."""
-        for child in set(active_children()) - self._others:
-            child.terminate()
-        # Waited for: a pool that breaks while Python ends may say so.
-        self.shutdown(cancel_futures=True)
-
-
 class Hands:
-    """The executor given, or processes: started at the first work, and anew if one dies."""
+    """The executor given, or processes: started at the first work, and anew if one dies.
+
+    To be used as a context: processes end after their work, or at once where it is left by an
+    exception.
+    """
 
     def __init__(self, workers: int, given: Executor | None = None) -> None:
         self._workers, self._given = workers, given
-        self._executor = given
+        self._own: ProcessPoolExecutor | None = None
+        self._others = set[object]()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, broken_off: type[BaseException] | None, *_: object) -> None:
+        if self._own is None:
+            return
+        if broken_off:
+            for child in active_children():
+                if child not in self._others:
+                    child.terminate()
+        # Waited for: a pool that breaks while Python ends may say so.
+        self._own.shutdown(cancel_futures=bool(broken_off))
 
     def submit(
         self, fn: Callable[Asked, Found], /, *args: Asked.args, **kwargs: Asked.kwargs
     ) -> Future[Found]:
-        """Hand out work."""
-        if self._executor is None:
-            self._executor = Crew(self._workers)
-        return self._executor.submit(fn, *args, **kwargs)
+        """Hand out work, for which a process may be started."""
+        if self._given is not None:
+            return self._given.submit(fn, *args, **kwargs)
+        if self._own is None:
+            self._others = set(active_children())
+            # spawn: engines are libraries with state of their own, which fork would share.
+            context = get_context("spawn")
+            self._own = ProcessPoolExecutor(self._workers, context, initializer=_begin)
+        with _undisturbed():
+            return self._own.submit(fn, *args, **kwargs)
 
     def renew(self) -> bool:
         """Replace broken processes; an executor given is not ours to replace."""
-        if self._given is not None:
-            return False
-        if self._executor is not None:
-            self._executor.shutdown(wait=False, cancel_futures=True)
-        self._executor = None
-        return True
-
-    def leave(self, *, wait: bool = False) -> None:
-        """Let go of processes, after their work or at once."""
-        if self._given is not None or self._executor is None:
-            return
-        if not wait and isinstance(self._executor, Crew):
-            self._executor.end()
-        else:
-            self._executor.shutdown()
-
-
-@contextmanager
-def crew(count: int) -> Generator[Executor]:
-    """Lend processes; where the block is left by an exception their work ends at once."""
-    executor = Crew(count)
-    try:
-        yield executor
-    except BaseException:
-        executor.end()
-        raise
-    executor.shutdown()
+        if self._own is not None:
+            self._own.shutdown(wait=False, cancel_futures=True)
+            self._own = None
+        return self._given is None
 
 
 @contextmanager

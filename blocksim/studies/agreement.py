@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from blocksim.arch.modes import Mode
-from blocksim.common.processes import crew
+from blocksim.common.processes import Hands
 from blocksim.common.progress import Progress
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
@@ -30,8 +30,8 @@ def answered(
             progress(done / len(jobs), name)
             found.append(ask(job))
         return found
-    with crew(workers) as executor:
-        futures = {executor.submit(ask, job): name for name, job in jobs}
+    with Hands(workers) as hands:
+        futures = {hands.submit(ask, job): name for name, job in jobs}
         for done, future in enumerate(as_completed(futures)):
             progress((done + 1) / len(jobs), futures[future])
         return [future.result() for future in futures]

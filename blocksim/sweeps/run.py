@@ -131,8 +131,8 @@ def sweep(
     make_folder(folder := Path(folder))
     with locked(folder):
         todo.done = identities(folder)
-        hands = Hands(workers, executor)
-        tally = _answered(todo, folder, hands, in_flight or 2 * workers, progress)
+        with Hands(workers, executor) as hands:
+            tally = _answered(todo, folder, hands, in_flight or 2 * workers, progress)
     return Summary(
         cases=todo.found + tally.rows,
         found=todo.found,
@@ -142,7 +142,7 @@ def sweep(
 
 
 def _answered(todo: _Todo, folder: Path, hands: Hands, many: int, progress: Progress) -> Tally:
-    """Answer all cases and write their rows; processes end, however that ends."""
+    """Answer all cases and write their rows."""
     tally, started = Tally(), time.perf_counter()
     progress(0.0, "")
 
@@ -154,12 +154,7 @@ def _answered(todo: _Todo, folder: Path, hands: Hands, many: int, progress: Prog
         said = f"{tally.rows} rows, {rate:.3g} a second"
         progress((todo.found + tally.rows) / todo.size, said)
 
-    try:
-        _work(todo, hands, many, keep)
-    except BaseException:
-        hands.leave()
-        raise
-    hands.leave(wait=True)
+    _work(todo, hands, many, keep)
     return tally
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import io
 import math
-from typing import Any, BinaryIO, cast
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.closing import marked_gaps
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.road import profile_of, road_of
+from blocksim.common.dates import is_dated
 from blocksim.common.errors import InputError
 from blocksim.common.later import require_library
 from blocksim.common.version import __version__
@@ -62,12 +63,25 @@ DASH = 0.4
 
 
 def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
-    """Write a sheet as DXF in metres."""
+    """Write a sheet as DXF in metres; where pages say no times, it is of the year 2000."""
     require_library("ezdxf", "DXF", "dxf")
     # It takes a second to import, which nothing else need wait for.
     import ezdxf
 
-    document: Any = cast(Any, ezdxf).new("R2010", setup=True)
+    library: Any = ezdxf
+    before = library.options.write_fixed_meta_data_for_testing
+    library.options.write_fixed_meta_data_for_testing = is_dated()
+    try:
+        document = library.new("R2010", setup=True)
+        _draw(document, sheet)
+        text = io.StringIO()
+        document.write(text)
+    finally:
+        library.options.write_fixed_meta_data_for_testing = before
+    file.write(text.getvalue().encode(document.output_encoding, "dxfreplace"))
+
+
+def _draw(document: Any, sheet: Sheet) -> None:
     document.units = METRES
     document.header["$MEASUREMENT"] = 1
     for name, (colour, dashes, width) in LAYERS.items():
@@ -90,9 +104,6 @@ def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
     _dimensions(space, sheet, shown, scale)
     foot = _words(space, sheet, shown, scale)
     _title(space, sheet, float(shown[:, 0].max()), foot, scale)
-    text = io.StringIO()
-    document.write(text)
-    file.write(text.getvalue().encode(document.output_encoding, "dxfreplace"))
 
 
 def _bodies(space: Any, sheet: Sheet) -> Array:
