@@ -219,7 +219,9 @@ def gained(recording: Recording) -> float:
         for pose, late, step in zip(poses, poses[1:], np.diff(recording.times), strict=False)
     ]
     above = (still[1:] + still[:-1]) / 2 + moving - still[0]
-    return max(0.0, float(above.max())) / float(still[0] - still.min())
+    gain = max(0.0, float(above.max()))
+    # A heap may stand: nothing gained, and nothing fell.
+    return gain / float(still[0] - still.min()) if gain else 0.0
 
 
 @dataclass(frozen=True, eq=False)
