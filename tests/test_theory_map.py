@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+import exact
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -16,14 +17,27 @@ from hypothesis import strategies as st
 
 from blocksim import InputError, Mode
 from blocksim.arch import limit, theory
+from blocksim.arch.theory import (
+    landmarks,
+    least_thickness,
+    least_thicknesses,
+    regions,
+    rotation,
+)
+from blocksim.arch.theory.arrays import BIT
 from blocksim.arch.theory.equations import inner_friction, shoulder_friction
+from blocksim.arch.theory.map import (
+    at_points,
+    divide_friction,
+    iso_half_angle,
+    special_angles,
+)
 from blocksim.arch.theory.regions import (
     at_inner_sliding,
     crown_hinge,
     divide_half_angle,
     equal_angles,
 )
-from blocksim.arch.theory.sliding import thrust_intervals
 
 angles = st.floats(math.radians(2), math.radians(178))
 frictions = st.floats(0.02, 50.0)
@@ -108,58 +122,231 @@ def test_many_voussoirs_converge_to_the_closed_form(
         assert built.hinges_intrados[-1] == pytest.approx(exact.beta_r, abs=2 * spacing)
 
 
-@pytest.mark.parametrize("weight", ["centreline", "sector"])
-@pytest.mark.parametrize("mu", [1e-12, 1e-6, 1e-3, 0.1, 1.0, 10.0, 1e3, 1e9, math.inf])
+WEIGHTS = ("centreline", "sector")
+
+
+def domain(count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    random = np.random.default_rng(seed)
+    half_angle = np.concatenate(
+        [random.uniform(0.2, 3.1, count // 2), random.uniform(2.4, 2.8, count - count // 2)]
+    )
+    return half_angle, np.tan(random.uniform(0.02, math.pi / 2, count))
+
+
+def compare(count: int, weight: str) -> None:
+    half_angle, mu = domain(count, 2)
+    found = least_thicknesses(half_angle, mu, weight)
+    names = found.mode
+    for i, (a, m) in enumerate(zip(half_angle.tolist(), mu.tolist(), strict=True)):
+        one = least_thickness(a, m, weight)
+        assert names[i] == one.mode.value, (a, m)
+        for values, single in (
+            (found.eta, one.eta),
+            (found.thrust, one.thrust),
+            (found.beta_s, one.beta_s),
+            (found.beta_r, one.beta_r),
+        ):
+            if single is None:
+                assert math.isnan(values[i]), (a, m)
+            else:
+                # The hinge is where something is flat: it is known less well.
+                assert abs(values[i] - single) <= 1e-12, (a, m)
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_agrees_with_the_scalar(weight: str) -> None:
+    compare(400, weight)
+
+
+def test_flat_arches_keep_their_digits() -> None:
+    """As alpha -> 0: eta = alpha^4/48 and beta_r = alpha/sqrt(2), alpha^2 apart."""
+    half_angle = np.array([1e-2, 1e-4, 1e-8, 1e-12])
+    found = least_thicknesses(half_angle, 1.0)
+    small = 3 * half_angle**2
+    assert (np.abs(48 * found.eta / half_angle**4 - 1) <= small + 1e-12).all()
+    assert (np.abs(found.beta_r * math.sqrt(2) / half_angle - 1) <= small + 1e-12).all()
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_limits(weight: str) -> None:
+    angles = [
+        1e-12,
+        1e-6,
+        0.5,
+        math.pi / 2,
+        2.3,
+        2.59,
+        2.648,
+        2.7,
+        2.8,
+        math.nextafter(math.pi, 0),
+    ]
+    frictions = [1e-300, 1e-12, 1e-3, 1.0, np.nextafter(1, 2), 3.0, 1e9, 1e300, math.inf]
+    found = least_thicknesses(np.array(angles)[:, None], np.array(frictions), weight)
+    stands = ~np.isnan(found.eta)
+    assert (found.modes > 0).all()
+    assert ((found.eta > 0) & (found.eta <= 2))[stands].all()
+    assert (found.thrust >= 0)[stands].all()
+    assert (found.beta_r >= 0)[stands].all()
+    assert not stands[-1].any()
+    # Far to the right mu no longer matters, and r is there at mu = inf only.
+    np.testing.assert_allclose(found.eta[:, -2], found.eta[:, -1], rtol=1e-7)
+    assert (found.modes[3:6, -1] & (BIT[Mode.RRR] | BIT[Mode.R]) > 0).all()
+
+
+@given(half_angle=st.floats(0.05, 2.78))
+@settings(max_examples=12, deadline=None)
+def test_mode_changes_on_lines_only(half_angle: float) -> None:
+    """Between two modes along mu, both are reported at the change itself."""
+    mu = np.tan(np.linspace(0.02, 1.57, 500))
+    found = least_thicknesses(half_angle, mu)
+    for i in np.flatnonzero(np.diff(found.modes)):
+        low, high = float(mu[i]), float(mu[i + 1])
+        before, after = found.modes[i], found.modes[i + 1]
+        while (low + high) / 2 not in (low, high):
+            middle = (low + high) / 2
+            if least_thicknesses(half_angle, middle).modes == before:
+                low = middle
+            else:
+                high = middle
+        at = least_thicknesses(half_angle, np.array([low, high])).modes
+        beside = least_thicknesses(half_angle, np.array([low - 1e-9, high + 1e-9])).modes
+        assert (at[1] & before) or (beside[1] == after) or at[0] & at[1]
+
+
 @pytest.mark.parametrize(
-    "alpha", [1e-3, 0.1, 1.0, math.pi / 2, 2.7, 3.0, math.pi - 1e-3, math.pi - 1e-9]
-)
-def test_ends_of_the_ranges(alpha: float, mu: float, weight: str) -> None:
-    found = theory.least_thickness(alpha, mu, weight)
-    for value in (found.eta, found.thrust, found.beta_r, found.beta_s):
-        assert value is None or math.isfinite(value)
-    # eta goes as alpha^4/48.
-    assert found.eta is None or 1e-15 <= found.eta <= 2
-    assert found.modes
-    for bound in thrust_intervals(np.array([alpha]), np.array([mu]))[:2]:
-        assert not np.isnan(bound).any()
-
-
-def test_shallow_arch() -> None:
-    """Small angles, derived here: eta = alpha^4/48, beta_r = alpha/sqrt 2, h = 1 - alpha^2/6.
-
-    To the fourth order the line of thrust is off the mean line by
-    const + (h - 1) x^2/2 + x^4/12. The even quartic of least range on [0, alpha] is
-    Chebyshev's: equal at 0 and alpha, extreme at alpha/sqrt 2, of range alpha^4/48.
-    The departure from it is of relative order alpha^2.
-    """
-    errors = []
-    for alpha in (0.4, 0.2, 0.1):
-        found = theory.least_thickness(alpha, math.inf)
-        errors.append(
-            [
-                1 - found.eta * 48 / alpha**4,
-                1 - found.beta_r * math.sqrt(2) / alpha,
-                1 - (1 - found.thrust) * 6 / alpha**2,
-            ]
-        )
-    ratios = np.array(errors[:-1]) / np.array(errors[1:])
-    assert ratios == pytest.approx(np.full((2, 3), 4.0), rel=0.05)
-
-
-@pytest.mark.parametrize(
-    ("field", "alpha", "mu", "weight"),
+    ("field", "values"),
     [
-        ("half_angle", 0.0, 1.0, "centreline"),
-        ("half_angle", math.pi, 1.0, "centreline"),
-        ("half_angle", math.nan, 1.0, "centreline"),
-        ("mu", 1.0, 0.0, "centreline"),
-        ("mu", 1.0, -math.inf, "centreline"),
-        ("mu", 1.0, math.nan, "centreline"),
-        ("mu", 1.0, "0.7", "centreline"),
-        ("weight", 1.0, 1.0, "milankovitch"),
+        ("half_angle", ([0.5, math.pi], 1.0)),
+        ("half_angle", (math.nan, 1.0)),
+        ("mu", (1.0, [0.5, 0.0])),
+        ("weight", (1.0, 1.0, "stone")),
     ],
 )
-def test_wrong_values(field: str, alpha: float, mu: float, weight: str) -> None:
-    with pytest.raises(InputError) as caught:
-        theory.least_thickness(alpha, mu, weight)
-    assert caught.value.field == field
+def test_wrong_input_is_named(field: str, values: tuple) -> None:
+    with pytest.raises(InputError, match=field):
+        least_thicknesses(*values)
+
+
+def test_shapes() -> None:
+    assert least_thicknesses(np.empty((0, 3)), 1.0).eta.shape == (0, 3)
+    assert least_thicknesses(1.0, 1.0).eta.shape == ()
+    assert least_thicknesses(1.0, 1.0).mode == "rrr"
+
+
+@pytest.mark.parametrize("weight", ["centreline", "sector"])
+def test_the_rotational_mode_that_is_read_is_the_one_that_is_solved(weight: str) -> None:
+    stored, solved = rotation._rotational(weight), rotation.solved(weight)
+    assert stored.widest == pytest.approx(solved.widest, rel=1e-15)
+    for one, other in zip(stored.pieces, solved.pieces, strict=True):
+        assert one == pytest.approx(other, abs=2e-14)
+
+
+def test_special_angles_of_the_sector() -> None:
+    """alpha_L of the sector is alpha_l of the centreline: A = 2/3 in both (sector.md, S9)."""
+    found = special_angles("sector")
+    assert found.limit == pytest.approx(special_angles().zero_thrust, rel=1e-14)
+    near = np.array([found.widest_hinge - 1e-4, found.widest_hinge, found.widest_hinge + 1e-4])
+    hinges = least_thicknesses(near, math.inf, "sector").beta_r
+    assert hinges[1] == pytest.approx(found.hinge, abs=1e-12)
+    assert hinges[1] > max(hinges[0], hinges[2])
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_the_rotational_mode_ends_in_r(weight: str) -> None:
+    """At alpha_l itself the hinge is at the crown: purely overturning, r alone (Fig. 25)."""
+    beside = special_angles(weight).zero_thrust + np.array([-1e-9, 0, 1e-9])
+    names = [least_thicknesses(angle, math.inf, weight).names for angle in beside]
+    assert names == [(Mode.RRR,), (Mode.R,), (Mode.R,)]
+
+
+@pytest.mark.parametrize(
+    ("eta", "mu", "mode"),
+    [
+        (0.3, 2.0, "rrr"),
+        (0.3, 0.3, "ss"),
+        (1.5, 1.0, "ss"),
+        (0.3, 0.6, "srr"),
+        (0.85, 2.5, "rrs"),
+        (0.963, 1.79, "rsr"),
+        (1.4, 3.0, "rs"),
+        (1.4, math.inf, "r"),
+        (0.7, math.inf, "rrr"),
+        (1e-9, 0.2, "rrr"),
+    ],
+)
+def test_regions_of_fig_9(eta: float, mu: float, mode: str) -> None:
+    assert at_points(eta, mu).regions.item() == (Mode(mode),)
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_landmarks_belong_to_all_their_regions(weight: str) -> None:
+    around = {"T": 4, "S": 3, "J": 3, "B": 2}
+    for name, mark in landmarks(weight).items():
+        point = at_points(mark.eta, mark.mu, weight)
+        assert len(point.regions[()]) == around[name], name
+        assert float(point.half_angle) == pytest.approx(mark.half_angle, abs=1e-11)
+
+
+def test_beside_the_lines() -> None:
+    """A billionth beside a line is on its own side; on it, both sides are named."""
+    alpha = np.array([1.0, 2.4])
+    first = regions.first_sliding(alpha)
+    on = at_points(first.eta, first.mu)
+    assert all({Mode.RRR, Mode.SRR} == set(names) for names in on.regions)
+    assert all(names == (Mode.RRR,) for names in at_points(first.eta, first.mu + 1e-9).regions)
+    assert all(names == (Mode.SRR,) for names in at_points(first.eta, first.mu - 1e-9).regions)
+    mu = np.array([0.5, 2.2])
+    divide = regions.divide(mu)
+    assert all(Mode.SS in names for names in at_points(divide.eta, mu).regions)
+    assert all(names == (Mode.SS,) for names in at_points(divide.eta, mu - 1e-9).regions)
+    assert all(Mode.SS not in names for names in at_points(divide.eta, mu + 1e-9).regions)
+    mu = np.array([1.9])
+    equal = regions.equal_angles(mu).eta
+    assert all({Mode.RRS, Mode.RSR} == set(names) for names in at_points(equal, mu).regions)
+    assert all(names == (Mode.RRS,) for names in at_points(equal - 1e-9, mu).regions)
+    assert all(names == (Mode.RSR,) for names in at_points(equal + 1e-9, mu).regions)
+    crown = regions.crown_hinge(mu).eta
+    assert all({Mode.RS, Mode.RSR} >= set(names) for names in at_points(crown, mu).regions)
+    assert all(names == (Mode.RSR,) for names in at_points(crown - 1e-9, mu).regions)
+    assert all(names == (Mode.RS,) for names in at_points(crown + 1e-9, mu).regions)
+
+
+@given(
+    half_angle=st.floats(0.05, 2.75),
+    friction_angle=st.floats(0.02, math.pi / 2),
+    weight=st.sampled_from(WEIGHTS),
+)
+@settings(max_examples=15, deadline=None)
+def test_look_up_inverts_least_thickness(
+    half_angle: float, friction_angle: float, weight: str
+) -> None:
+    mu = math.tan(friction_angle)
+    critical = least_thickness(half_angle, mu, weight)
+    if critical.eta is None or critical.eta > 1.99:
+        return
+    there = at_points(critical.eta, mu, weight).half_angle
+    assert float(there) == pytest.approx(half_angle, rel=1e-7)
+
+
+def test_iso_lines_and_divide() -> None:
+    alpha = math.radians(125)
+    assert divide_friction(alpha) == pytest.approx(0.8477497839674316, rel=1e-13)
+    # Flat arches: mu -> alpha^3/12, from expanding eqs (8) and (9).
+    assert divide_friction(0.01) == pytest.approx(0.01**3 / 12, rel=1e-4)
+    line = iso_half_angle(alpha, np.linspace(0.1, 4, 200))
+    assert line.mu.min() > divide_friction(alpha)
+    assert (np.diff(line.eta) <= 0).all()
+    # Fig. 13: constant from the line of first sliding on.
+    assert line.eta[-1] == pytest.approx(0.3849612500740051, rel=1e-13)
+    assert iso_half_angle(3.0, np.array([1.0, math.inf])).mu.size == 0
+
+
+@pytest.mark.parametrize("mu", [1e-9, 0.3, 1.0, 3.0, 1e8, 1e12, 1e300])
+def test_the_divide_for_any_friction(mu: float) -> None:
+    """From (8) and (9) in 50 digits; beyond 1e8 it is pi within round-off of 1/mu."""
+    found = regions.divide_half_angle(mu)
+    if mu < 1e8:
+        assert found == pytest.approx(float(exact.divide_half_angle(mu, found)), rel=1e-12)
+    else:
+        assert math.pi - found == pytest.approx(1 / mu, abs=5e-16, rel=1e-3)
