@@ -1,6 +1,5 @@
 """The arch figure, and mechanisms of named modes."""
 
-import io
 import math
 
 import numpy as np
@@ -11,7 +10,6 @@ from blocksim import Mode
 from blocksim.arch.limit.collapse import collapse_of_mode
 from blocksim.arch.theory import landmarks, least_thickness
 from blocksim.view.archfigure import ArchPicture, arch_figure, picture_of_theory
-from blocksim.view.drawing import save_figure
 
 
 def least(degrees: float, mu: float) -> ArchPicture:
@@ -61,27 +59,6 @@ def test_what_moves_and_what_bears_is_within_the_picture() -> None:
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     assert (drawn > [left, low]).all()
     assert (drawn < [right, high]).all()
-
-
-@pytest.mark.parametrize("kind", [pytest.param("png", marks=pytest.mark.long), "svg"])
-def test_figure_is_reproducible(kind: str) -> None:
-    files = []
-    for _ in range(2):
-        rough, slides = least(86, math.inf), least(125, 0.9)
-        assert rough.title.startswith("purely rotational [rrr]")
-        assert slides.title.endswith("μ = 0.9 (φ = 42.0°), η = 0.4209")
-        file = io.BytesIO()
-        save_figure(arch_figure([rough, slides]), file, kind)
-        files.append(file.getvalue())
-    assert files[0] == files[1]
-    assert len(files[0]) > 10_000
-
-
-def test_picture_of_overturning() -> None:
-    critical = least_thickness(2.7, math.inf)
-    picture = picture_of_theory(critical, Mode.R, 2.7, math.inf)
-    arch_figure([picture])
-    assert picture.thrust < 1e-20
 
 
 def legend(figure: Figure) -> set[str]:

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from blocksim import CircularArch, InputError, Mode, Problem, Verdict, bracket
+from blocksim import CircularArch, Mode, Problem, Verdict, bracket
 from blocksim.arch import limit, theory
 from blocksim.arch.circular import ETA_MAX
 from blocksim.ask.search import Answer, Bisection
@@ -112,27 +112,15 @@ def test_undecided_band_stays_inside_the_bracket(
         assert threshold * (1 + band) > ETA_MAX
 
 
-@given(st.floats(1e-3, 2.0), tolerances)
-def test_never_stands(guess: float, tol: float) -> None:
-    search, asked = run(lambda _eta: Verdict.COLLAPSES, guess, tol)
-    assert search.high is None
-    assert search.low == ETA_MAX == max(asked)
-    assert search.runs < 20
-
-
-@given(st.floats(1e-3, 2.0), tolerances)
-def test_always_stands(guess: float, tol: float) -> None:
-    search, asked = run(lambda _eta: Verdict.STANDS, guess, tol)
-    assert search.low is None
-    assert search.high == min(asked)
-    assert search.runs < 60
-
-
-@given(st.floats(1e-3, 2.0), tolerances)
-def test_never_an_answer(guess: float, tol: float) -> None:
-    search, asked = run(lambda _eta: Verdict.UNDECIDED, guess, tol)
-    assert (search.low, search.high) == (None, None)
-    assert search.undecided == search.runs == len(asked) < 60
+@given(st.floats(1e-3, 2.0), tolerances, st.sampled_from([*Verdict]))
+def test_where_nothing_changes_one_end_is_open(
+    guess: float, tol: float, verdict: Verdict
+) -> None:
+    search, asked = run(lambda _eta: verdict, guess, tol)
+    assert search.low == (ETA_MAX if verdict is Verdict.COLLAPSES else None)
+    assert search.high == (min(asked) if verdict is Verdict.STANDS else None)
+    assert search.undecided == (search.runs if verdict is Verdict.UNDECIDED else 0)
+    assert search.runs == len(asked) < (20 if verdict is Verdict.COLLAPSES else 60)
 
 
 @pytest.mark.parametrize("verdict", [Verdict.STANDS, Verdict.COLLAPSES, Verdict.UNDECIDED])
@@ -209,35 +197,3 @@ def test_no_ratio_is_held_twice(confirm: bool, monkeypatch: pytest.MonkeyPatch) 
     assert found.arch.mode is Mode.RRR
     assert found.confirmed is (True if confirm else None)
     assert f"ends {'confirmed' if confirm else 'not tried'} by moving runs" in found.reason
-
-
-@pytest.mark.parametrize(
-    ("field", "wrong", "allowed"),
-    [
-        ("tol", 0.0, "at most 0.5"),
-        ("tol", 0.6, "at most 0.5"),
-        ("tol", math.nan, "at most 0.5"),
-        ("friction", 0.0, "1e-06 to 1e+06 (or inf)"),
-        ("method", "fem", "theory"),
-        ("half_angle", 4.0, "to 3.14159 rad"),
-        ("voussoirs", 2, "3 to 10000"),
-        ("weight", "mean", "centreline"),
-    ],
-)
-def test_wrong_values(field: str, wrong: object, allowed: str) -> None:
-    made = {"half_angle": 1.0, "friction": 0.7, "voussoirs": 9}
-    asked = {field: wrong} if field in {"tol", "method"} else {}
-    with pytest.raises(InputError) as caught:
-        bracket(CircularArch(**{**made, **({} if asked else {field: wrong})}), **asked)
-    assert caught.value.field == field
-    assert allowed in str(caught.value)
-    assert "\n" not in str(caught.value)
-
-
-def test_tolerance_finer_than_an_engine_can_answer() -> None:
-    with pytest.raises(InputError, match=r"at least 0\.0001 for pymunk"):
-        bracket(
-            CircularArch(half_angle=1.0, friction=0.7, voussoirs=9, weight="centreline"),
-            method="pymunk",
-            tol=1e-5,
-        )

@@ -147,12 +147,6 @@ def test_the_thrust_of_a_critical_arch_is_the_papers() -> None:
     assert carried.thrust == pytest.approx([critical.thrust * unit] * 2, rel=2e-3)
 
 
-def test_milankovitch_with_true_weights() -> None:
-    """0.1075 for a semicircle whose voussoirs weigh what they are (Milankovitch 1907)."""
-    ring = CircularArch(half_angle_deg=90, friction=math.inf, voussoirs=999, weight="sector")
-    assert f"{blocksim.bracket(ring, method='limit').arch.eta_limit:.4f}" == "0.1075"
-
-
 def test_what_is_not_weighed_is_told_in_shares_of_its_weight() -> None:
     told = inside("check", "portal", "--mu", "0.7").stdout
     assert "no unit weight was given" in told

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from blocksim import Arch, CircularArch, InputError, JointState, Mode, Verdict, check
+from blocksim import Arch, CircularArch, JointState, Mode, Verdict, check
 from blocksim.arch import limit, theory
 from blocksim.ask.methods import choose, chosen_words
 
@@ -54,29 +54,6 @@ def test_joints_of_the_limit_mechanism() -> None:
     # beta_r = 54.5 deg: six joint spacings of 9 deg from the crown.
     assert active == [(0, outside), (4, inside), (10, outside), (16, inside), (20, outside)]
     assert seen.arch.mode is Mode.RRR
-
-
-@pytest.mark.parametrize(("eta", "verdict"), [(0.1, "collapses"), (0.115, "stands")])
-def test_every_method_agrees_off_the_limit(eta: float, verdict: str) -> None:
-    arch = Arch(half_angle=math.pi / 2, eta=eta, voussoirs=20)
-    for method in ("theory", "limit", "pymunk", "auto"):
-        seen = check(CircularArch.of(arch, friction=0.7), method=method)
-        assert seen.verdict.value == verdict
-        assert seen.arch.mode is (Mode.RRR if verdict == "collapses" else None)
-        assert seen.method == ("limit" if method == "auto" else method)
-        assert (seen.state_hash is not None) == (method == "pymunk")
-
-
-@pytest.mark.parametrize(
-    ("field", "mu", "method"), [("friction", 0, "limit"), ("method", 1, "x")]
-)
-def test_wrong_values(field: str, mu: float, method: str) -> None:
-    with pytest.raises(InputError) as caught:
-        check(
-            CircularArch.of(Arch(half_angle=1.0, eta=0.2, voussoirs=9), friction=mu),
-            method=method,
-        )
-    assert caught.value.field == field
 
 
 LEANING = (

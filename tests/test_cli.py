@@ -53,12 +53,6 @@ def test_bracket_holds_the_contract() -> None:
     assert arch["thrust"] is None
 
 
-def test_bracket_where_nothing_stands() -> None:
-    answer = json.loads(blocksim("bracket", "--alpha", "90", "--mu", "0.3", "--json").stdout)
-    assert answer["arch"]["eta_high"] is None
-    assert answer["arch"]["mode"] == "ss"
-
-
 def test_options_override_the_scenario() -> None:
     done = blocksim("bracket", "semicircle", "--alpha", "125", "--mu", "0.9", "--json")
     answer = json.loads(done.stdout)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from arches import arch_at
 
-from blocksim import CircularArch, Problem, Verdict, load_recording, simulate
+from blocksim import CircularArch, Problem, Verdict
 from blocksim.blocks.joints import joint_motion
 from blocksim.engines.base import trusted
 from blocksim.engines.contact import ContactProblem
@@ -99,16 +99,6 @@ def test_friction_forces_oppose_the_slip_at_the_edge_of_the_cone():
     assert gap.min() > -1e-6
 
 
-def test_a_mirrored_arch_moves_as_the_mirror_image():
-    world = world_of(arch_at(0.9, 90, 0.9, 20), 0.9)
-    world.hold(1)
-    world.advance(60)
-    moved = world.poses()
-    mirrored = moved[::-1] * np.array([-1.0, 1.0, -1.0])
-    assert np.abs(moved - mirrored).max() < 1e-6
-    assert np.abs(moved[:, 2]).max() > 1e-3
-
-
 def test_over_its_residual_the_answer_is_undecided():
     simulation = Simulation.of(
         CircularArch.of(arch_at(0.9, 90, 0.9, 20), 0.9).problem(), "direct"
@@ -118,18 +108,6 @@ def test_over_its_residual_the_answer_is_undecided():
     world = simulation.world()
     assert onset(world, simulation).verdict is Verdict.UNDECIDED
     assert not trusted(world, settings)
-
-
-def test_a_recording_keeps_its_quality(tmp_path):
-    recording = simulate(
-        CircularArch.of(arch_at(0.9, 90, 0.9, 20), friction=0.9), method="direct", duration=1.5
-    )
-    path = tmp_path / "run.npz"
-    recording.save(path)
-    quality = load_recording(path).quality
-    assert quality == recording.quality
-    assert 0 < quality.residual < 1e-8
-    assert 0 <= quality.penetration < 1e-5
 
 
 @pytest.mark.parametrize(

@@ -287,9 +287,8 @@ def test_what_falls_has_no_line_of_thrust_at_rest() -> None:
     for tilt, words in ((0.0, "line of thrust"), (math.radians(20), "nearest line of thrust")):
         film = Film([recorded(known.tilted(tilt), still, times)], height=HEIGHT)
         (stage,) = film._stages
-        if stage.thrust:
-            said = [told for told, _ in film._entries(set(), thrust=True)]
-            assert said == [f"{words} at rest"]
+        assert len(stage.thrust) == 1
+        assert [told for told, _ in film._entries(set(), thrust=True)] == [f"{words} at rest"]
 
 
 def test_a_film_ends_with_the_last_block_in_sight(tmp_path: Path) -> None:

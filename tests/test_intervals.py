@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -138,7 +139,9 @@ def test_what_leans_stands_between_two_tilts(tmp_path: Path) -> None:
     assert told["limit"] == found["high"]["limit"]
 
 
-def on_bed(dead: list[tuple[float, float, float]], mu: float) -> Problem:
+def on_bed(
+    dead: list[tuple[float, float, float]], mu: float, live: Sequence[dict[str, Any]] = ()
+) -> Problem:
     """A block of 1 m by 0.5 m on level ground, under forces at places along its top."""
     loads = [{"block": "block", "point": [x, 0.5], "force": [h, v]} for x, h, v in dead]
     return structure_of(
@@ -150,6 +153,7 @@ def on_bed(dead: list[tuple[float, float, float]], mu: float) -> Problem:
                 {"id": "block", "vertices": [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]},
             ],
             "dead": [{"body": [0, -1]}, *loads],
+            "live": live,
         }
     )
 
@@ -192,22 +196,8 @@ def test_factors_of_a_load_are_two_of_a_moment(low: float, wide: float) -> None:
     high = low + wide
     unit = 0.5 / wide  # of the force, so that 0.5 (0.5 unit) wide = 0.5 * 0.5
     steady = -unit * (low + high) / 2
-    problem = on_bed([(0.5, steady, 0.0)], 4.0)
     live = [{"block": "block", "point": [0.5, 0.5], "force": [unit, 0.0]}]
-    table = {
-        "friction": 4.0,
-        "density": 1.0,
-        "blocks": [
-            {"id": "bed", "vertices": [[-3, -1], [3, -1], [3, 0], [-3, 0]], "fixed": True},
-            {"id": "block", "vertices": [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]},
-        ],
-        "dead": [
-            {"body": [0, -1]},
-            {"block": "block", "point": [0.5, 0.5], "force": [steady, 0.0]},
-        ],
-        "live": live,
-    }
-    problem = structure_of(table)
+    problem = on_bed([(0.5, steady, 0.0)], 4.0, live)
     # About an edge: 0.5 of weight at 0.5 m against the force at 0.5 m.
     (found,) = over_factor(problem)
     reach = 0.5 / unit

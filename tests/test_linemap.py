@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 
 from blocksim.arch.theory import least_thickness
-from blocksim.view.linemap import apart, line_map_figure
+from blocksim.view.linemap import line_map_figure
 from blocksim.view.mapshapes import ISO_DEGREES, iso_angles
 from blocksim.view.style import ISO
 
@@ -113,9 +113,3 @@ def test_zooms_draw_and_name_what_is_in_them(span: tuple[float, float], above: i
     labels = named(figure)
     assert set(labels) >= set(solid) - {"151.742°"}
     assert sum(label.get_rotation() == 90 for label in labels.values()) == above
-
-
-def test_labels_move_apart_no_more_than_needed() -> None:
-    assert apart([1.0, 5.0], 2.0) == [1.0, 5.0]
-    assert apart([1.0, 1.0, 9.0], 2.0) == [0.0, 2.0, 9.0]
-    assert apart([1.0, 2.0, 3.0], 2.0) == pytest.approx([0.0, 2.0, 4.0])

@@ -18,7 +18,7 @@ from blocksim import Mode
 from blocksim.arch.limit import least_thickness
 from blocksim.arch.theory import landmarks
 from blocksim.view.linemap import line_map_figure
-from blocksim.view.mapfigure import MapPoint, map_figure
+from blocksim.view.mapfigure import map_figure
 from blocksim.view.mapshapes import ANGLE
 
 PRINTED = tomllib.loads(
@@ -189,12 +189,6 @@ def test_over_the_friction_angle(weight: str) -> None:
     flat = np.asarray(drawn["feasible 90°"].get_xdata())
     assert flat.max() == pytest.approx(90, abs=0.2)
     assert list(drawn["asymptote"].get_ydata()) == pytest.approx([lowest, lowest])
-
-
-def test_points_are_not_drawn_over_angles() -> None:
-    point = MapPoint(mu=1.0, eta=0.3, mode=None, label="1", miss=False, note="")
-    with pytest.raises(ValueError, match="axis of coefficients"):
-        map_figure([point], friction=ANGLE)
 
 
 def test_the_sector_map_is_another_one() -> None:

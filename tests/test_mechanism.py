@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from derivations import least_thickness_by_program
 
 from blocksim import Arch
 from blocksim.arch.limit import least_thickness
@@ -99,16 +98,3 @@ def test_nothing_moves_where_it_stands() -> None:
         assert found.mode is None
         assert not found.rates.any()
         assert not found.motions.any()
-
-
-@WEIGHTS
-def test_least_thickness_equals_limit(weight: str) -> None:
-    random = np.random.default_rng(4)
-    for _ in range(12):
-        half_angle, mu = random.uniform(0.3, 2.75), math.tan(random.uniform(0.1, 1.5))
-        voussoirs = int(random.integers(3, 60))
-        expected = least_thickness(half_angle, mu, voussoirs, weight).eta
-        found = least_thickness_by_program(half_angle, mu, voussoirs, weight)
-        assert (found is None) == (expected is None)
-        if found is not None:
-            assert abs(found - expected) <= 1e-12

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,11 +24,9 @@ from blocksim import (
     Mode,
     Problem,
     Verdict,
-    load_recording,
     simulate,
     structure_of,
 )
-from blocksim.blocks.assembly import SPATIAL
 from blocksim.engines.base import Engine
 from blocksim.simulation.observation import hold, observe
 
@@ -145,36 +142,12 @@ def test_let_go_blocks_touch_at_the_ends_of_joints_only(problem: Problem) -> Non
     assert off.min(axis=1).max() < 1e-6
 
 
-def test_the_reason_names_bounded_friction() -> None:
-    thick = replace(THIN, eta=0.3)
-    assert (
-        "as friction"
-        not in observe(CircularArch.of(thick, 0.7).problem(), "pybullet", moving=False).reason
-    )
-    rough = observe(CircularArch.of(thick, 20.0).problem(), "pybullet", moving=False)
-    assert "pybullet took 10 as friction" in rough.reason
-
-
 def test_other_spaces_do_not_disturb_a_held_one() -> None:
     """Bullet has settings that all its spaces share."""
     alone, beside = (hold(CircularArch.of(THIN, 0.7).problem(), "pybullet") for _ in range(2))
     undisturbed = alone.release(0.5).recording
     hold(CircularArch.of(replace(THIN, eta=1.0), 0.7).problem(), "pybullet")
     assert beside.release(0.5).recording.state_hash == undisturbed.state_hash
-
-
-def test_a_recording_in_space_is_kept(tmp_path: Path) -> None:
-    thick = replace(THIN, eta=0.3)
-    recording = simulate(
-        CircularArch.of(thick, 0.7).problem().leaning(0.7), method="pybullet", duration=0.5
-    )
-    path = tmp_path / "run.npz"
-    recording.save(path)
-    again = load_recording(path)
-    assert again.poses.shape == (len(again.times), THIN.voussoirs, SPATIAL)
-    assert again.state_hash == recording.state_hash
-    assert again.problem.gravity[2] == math.sin(0.7)
-    assert again.beyond_plane[-1] > 1e-2
 
 
 def test_the_thinnest_arches_are_given_up_soon() -> None:

@@ -60,11 +60,6 @@ def test_displacement_in_closed_form() -> None:
     assert assembly.displacement(poses) == pytest.approx(expected, rel=1e-12)
 
 
-def test_seconds() -> None:
-    """Time unit sqrt(r/g)."""
-    assert recording().seconds(9.81)[-1] == pytest.approx(0.3 * math.sqrt(4 / 9.81), rel=1e-14)
-
-
 def refused(path: Path) -> str:
     with pytest.raises(InputError) as caught:
         load_recording(path)

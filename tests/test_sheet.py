@@ -28,7 +28,7 @@ from blocksim import (
 )
 from blocksim.kinds.offers import carried_of
 from blocksim.view.drawing import save_figure
-from blocksim.view.sheet import Sheet, answer_sheet, scale_for, scale_words, sheet_of
+from blocksim.view.sheet import Sheet, answer_sheet, sheet_of
 from blocksim.view.sheetdxf import LAYERS, write_dxf
 from blocksim.view.sheetfigure import sheet_figure
 from blocksim.view.thrustlines import is_chained
@@ -268,15 +268,6 @@ def test_a_page_is_a4_upright_or_across() -> None:
         pages.append([float(each) / 72 * 25.4 for each in page.groups()])
     assert pages[0] == pytest.approx([210.0, 297.0], abs=0.05)
     assert pages[1] == pytest.approx([297.0, 210.0], abs=0.05)
-
-
-def test_usual_scales() -> None:
-    room = np.array([200.0, 100.0])
-    assert scale_for(np.array([10.0, 1.0]), room) == 50
-    assert scale_for(np.array([10.1, 1.0]), room) == 100
-    assert scale_for(np.array([0.1, 5.1]), room) == 100
-    assert scale_for(np.array([0.02, 0.01]), room) == pytest.approx(0.1)
-    assert [scale_words(each) for each in (50.0, 2.5, 0.1)] == ["1:50", "1:2.5", "10:1"]
 
 
 def test_a_legend_is_of_what_is_there() -> None:

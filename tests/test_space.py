@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from kind_cases import KINDS
 from matplotlib.collections import PolyCollection
 from running import inside
-from space_cases import CASES, GROUND, NAMES, box, case, enclosed, problem_of, rotation, tower
+from space_cases import GROUND, NAMES, box, case, enclosed, problem_of, rotation, tower
 from structure_cases import case as plane_case
 from structure_cases import names as plane_names
 from structure_cases import scenes, some_of
@@ -301,23 +301,18 @@ def test_a_survey_with_few_decimals_has_the_same_joints(decimals: int) -> None:
     )
 
 
-def test_commands_answer_in_space_with_the_keys_of_the_plane() -> None:
+def test_commands_answer_in_space_with_the_keys_of_the_plane(tmp_path: Path) -> None:
     """Both verbs, in words and as JSON."""
-    path = CASES / "wall_6_4_0_0_1_0.json"
-    known = json.loads(path.read_text(encoding="utf-8"))
-    file = Path("wall_in_space.json")
+    known = case("wall_6_4_0_0_1_0")
+    file = tmp_path / "wall.json"
+    file.write_text(json.dumps(known["scene"]), encoding="utf-8")
     told: dict[str, dict[str, Any]] = {}
-    try:
-        file.write_text(json.dumps(known["scene"]), encoding="utf-8")
-        for command in ("check", "bracket --over load"):
-            verb, *rest = command.split()
-            done = inside(verb, str(file), *rest, "--json")
-            assert done.returncode == 0, done.stderr
-            told[verb] = json.loads(done.stdout)
-        plane = json.loads(inside(*["check", "wall", "--mu", "0.7", "--json"]).stdout)
-        words = inside("check", str(file), "--load", "0.3").stdout
-    finally:
-        file.unlink(missing_ok=True)
+    for verb, *rest in (("check",), ("bracket", "--over", "load")):
+        done = inside(verb, str(file), *rest, "--json")
+        assert done.returncode == 0, done.stderr
+        told[verb] = json.loads(done.stdout)
+    plane = json.loads(inside("check", "wall", "--mu", "0.7", "--json").stdout)
+    words = inside("check", str(file), "--load", "0.3").stdout
     assert set(told["check"]) == set(plane)
     assert set(told["check"]["problem"]) == set(plane["problem"])
     assert told["bracket"]["limit"] == pytest.approx(known["expected"]["value"], rel=1e-6)

@@ -175,17 +175,6 @@ def test_the_first_of_several_wrong_entries_is_named():
         structure_of(table)
 
 
-def test_no_file_and_too_much_of_it(tmp_path: Path):
-    for path in (tmp_path / "none.json", tmp_path):
-        with pytest.raises(InputError, match="must be an existing structure file"):
-            load_structure(path)
-    large = tmp_path / "large.json"
-    with large.open("wb") as file:
-        file.truncate(20_000_001)
-    with pytest.raises(InputError, match="at most 20000000 bytes"):
-        load_structure(large)
-
-
 def test_more_blocks_than_allowed():
     block = {"id": 0, "vertices": UNIT}
     with pytest.raises(InputError, match="blocks") as raised:
