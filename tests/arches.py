@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Any
 
 import numpy as np
+from worlds import Engine, Simulation, onset
 
 from blocksim import (
     Arch,
@@ -19,10 +21,6 @@ from blocksim import (
     Verdict,
     bracket,
 )
-from blocksim.arch import limit
-from blocksim.engines.base import Engine
-from blocksim.simulation.onset import onset
-from blocksim.simulation.simulated import Simulation
 
 ARCHES: dict[str, list[tuple[Any, ...]]] = {
     "pymunk": [
@@ -54,13 +52,20 @@ ARCHES: dict[str, list[tuple[Any, ...]]] = {
 """Half-angle [deg], mu, voussoirs, weight, and the mode a little below the least thickness."""
 
 
+@cache
+def least(half_angle: float, mu: float, voussoirs: int = 27, weight: str = "centreline") -> Any:
+    """Least thickness, mode and thrust of an arch in theory, and of its voussoirs as built."""
+    arch = CircularArch(half_angle=half_angle, friction=mu, voussoirs=voussoirs, weight=weight)
+    return bracket(arch, method="theory").arch
+
+
 def arch_at(
     ratio: float, angle: float, mu: float, count: int, weight: str = "centreline"
 ) -> Arch:
     """An arch at a ratio of the least thickness of its voussoirs; its half-angle in degrees."""
     alpha = math.radians(angle)
-    least = limit.least_thickness(alpha, mu, count, weight).eta
-    return Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
+    eta = ratio * least(alpha, mu, count, weight).eta_limit
+    return Arch(half_angle=alpha, eta=eta, voussoirs=count, weight=weight)
 
 
 def bracket_at(

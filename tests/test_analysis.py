@@ -18,13 +18,12 @@ import matplotlib.colors
 import matplotlib.image
 import numpy as np
 import pytest
+from arches import least
 from scipy.spatial.transform import Rotation
+from worlds import Quality, Simulation
 
 import blocksim
-from blocksim import Arch
-from blocksim.arch import limit, theory
-from blocksim.engines.base import Quality
-from blocksim.simulation.simulated import Simulation
+from blocksim import Arch, CircularArch
 from blocksim.view.style import LIVE, MECHANISM, STONE, THRUST
 
 STUDIES = Path(__file__).parent.parent / "analysis"
@@ -235,13 +234,14 @@ def test_arches_of_the_map_are_drawn_the_same_again_and_near_critical() -> None:
     for each in drawn:
         half_angle = math.radians(each.alpha_deg)
         if each.eta is None:
-            published = theory.least_thickness(half_angle, each.mu)
-            assert published.eta is not None
+            published = least(half_angle, each.mu)
+            assert published.eta_theory is not None
             assert published.mode == each.published
         else:
             arch = Arch(half_angle=half_angle, eta=each.eta, voussoirs=each.voussoirs)
-            assert limit.stands(arch, each.mu * 1.001)
-            assert not limit.stands(arch, each.mu * 0.999)
+            for share, verdict in ((1.001, "stands"), (0.999, "collapses")):
+                asked = CircularArch.of(arch, share * each.mu)
+                assert blocksim.check(asked, method="limit").verdict == verdict
 
 
 @pytest.mark.long

@@ -12,12 +12,13 @@ import sys
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from worlds import hold
 
 from blocksim import CircularArch, Mode, Problem, Verdict, bracket
 from blocksim.arch import limit, theory
 from blocksim.arch.circular import ETA_MAX
 from blocksim.ask.search import Answer, Bisection
-from blocksim.simulation.observation import Held, hold
+from blocksim.simulation.observation import Held
 
 tolerances = st.floats(1e-4, 0.3)
 thresholds = st.floats(1e-3, 1.99)

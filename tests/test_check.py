@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import pytest
+from arches import least
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from blocksim import Arch, CircularArch, JointState, Mode, Verdict, check
-from blocksim.arch import limit, theory
 from blocksim.ask.methods import choose, chosen_words
 
 
@@ -25,15 +25,16 @@ def test_static_methods_on_both_sides(
     degrees: float, mu: float, count: int, weight: str, method: str, ratio: float
 ) -> None:
     alpha = math.radians(degrees)
-    least = {
-        "theory": theory.least_thickness(alpha, mu, weight).eta,
-        "limit": limit.least_thickness(alpha, mu, count, weight).eta,
+    known = least(alpha, mu, count, weight)
+    exact = {
+        "theory": known.eta_theory,
+        "limit": known.eta_limit,
     }[method]
-    eta = (least or 1.0) * ratio
+    eta = (exact or 1.0) * ratio
     assume(eta <= 2)
     arch = Arch(half_angle=alpha, eta=eta, voussoirs=count, weight=weight)
     seen = check(CircularArch.of(arch, friction=mu), method=method)
-    stands = least is not None and ratio > 1
+    stands = exact is not None and ratio > 1
     assert seen.verdict is (Verdict.STANDS if stands else Verdict.COLLAPSES)
     assert len(seen.joints) == count + 1
     assert [joint.angle for joint in seen.joints] == pytest.approx(list(arch.joint_angles))

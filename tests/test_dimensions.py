@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from arches import least
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from running import inside
 
 from blocksim import Arch
-from blocksim.arch import limit
 from blocksim.arch.dimensions import LINES, At, Dimensions, dimensions_of
 from blocksim.kinds.scenarios import load_scenario
 
@@ -81,8 +81,8 @@ def test_an_engineers_arch_in_one_command() -> None:
     found = {**arch, **told["problem"]}
     assert {key: found[key] for key in expected} == pytest.approx(expected, rel=EXACT)
     assert (arch["voussoirs"], arch["weight"]) == (31, "sector")
-    least = limit.least_thickness(ALPHA, expected["mu"], 31, "sector").eta
-    assert arch["eta_limit"] == pytest.approx(least, rel=1e-12)
+    eta = least(ALPHA, expected["mu"], 31, "sector").eta_limit
+    assert arch["eta_limit"] == pytest.approx(eta, rel=1e-12)
 
 
 def test_words_give_both_forms() -> None:

@@ -6,16 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from arches import arch_at
+from worlds import DIRECT, Blocks, ContactProblem, Simulation, joint_motion, observe, onset
 
 from blocksim import CircularArch, Problem, Verdict
-from blocksim.blocks.joints import joint_motion
 from blocksim.engines.base import trusted
-from blocksim.engines.contact import ContactProblem
-from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.simulation.motion import moving_run
-from blocksim.simulation.observation import observe
-from blocksim.simulation.onset import onset
-from blocksim.simulation.simulated import Simulation
 
 CASES = [
     (90, 0.9, 27, "centreline"),
@@ -39,7 +34,7 @@ def held(arch, mu):
 
 def world_of(arch, mu, step=0.01):
     assembly = arch.assembly()
-    settings = replace(ENGINE.rule(assembly), step=step)
+    settings = replace(DIRECT.rule(assembly), step=step)
     return Blocks(Problem(assembly=assembly, mu=mu), settings)
 
 

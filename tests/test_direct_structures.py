@@ -10,17 +10,22 @@ import numpy as np
 import pytest
 from structure_cases import case, first, names, of_each_kind
 from threadpoolctl import ThreadpoolController
+from worlds import (
+    DIRECT,
+    Blocks,
+    classify,
+    ground_level,
+    joint_motion,
+    observe,
+    overlap_and_slip,
+)
 
 from analysis.structure_cases import ASIDE, MOST, Question, answered, questions
 from blocksim import Assembly, Joint, JointState, Problem, Verdict, equilibrium, structure_of
-from blocksim.blocks.joints import classify, joint_motion, overlap_and_slip
 from blocksim.engines.contact import banded, interior, path_following, solver
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.geometry import Geometry
 from blocksim.engines.contact.step import Answer, Step
-from blocksim.engines.direct import ENGINE, Blocks
-from blocksim.engines.ground import ground_level
-from blocksim.simulation.observation import observe
 from tests.certificates import certificate
 
 MOVED = [
@@ -90,7 +95,7 @@ def test_let_go_it_does_what_it_begins(name: str) -> None:
 
 
 def world_of(problem: Problem, step: float) -> Blocks:
-    return Blocks(problem, replace(ENGINE.rule(problem.assembly), step=step))
+    return Blocks(problem, replace(DIRECT.rule(problem.assembly), step=step))
 
 
 def placed(problem: Problem, world: Blocks, points: np.ndarray, block: int = 0) -> np.ndarray:

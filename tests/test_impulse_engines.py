@@ -12,15 +12,11 @@ from functools import partial
 from typing import Any
 
 import pytest
-from arches import ARCHES, arch_at, bracket_at, held_in
+from arches import ARCHES, arch_at, bracket_at, held_in, least
 from images import mirrored, renumbered
+from worlds import Settings, get_engine, observe, observed_mode
 
 from blocksim import Arch, Assembly, CircularArch, JointState, Problem, Verdict, simulate
-from blocksim.arch import limit
-from blocksim.arch.modes import observed_mode
-from blocksim.engines import get_engine
-from blocksim.engines.base import Settings
-from blocksim.simulation.observation import observe
 
 LONG = pytest.mark.long
 ASIDE = {"pymunk": 0.01, "pybullet": 0.01, "mujoco": 0.005}
@@ -45,7 +41,7 @@ def installed(request: pytest.FixtureRequest) -> None:
 def test_both_sides_of_the_least_thickness(engine: str, arch: Any, side: int) -> None:
     """By the onset test, and let go, but for mujoco: a motion takes it minutes."""
     *shape, mode = arch
-    assert limit.least_thickness(math.radians(shape[0]), *shape[1:]).mode is mode
+    assert least(math.radians(shape[0]), *shape[1:]).mode_limit is mode
     built = arch_at(1 + side * ASIDE[engine], *shape)
     moving = engine != "mujoco"
     seen = observe(CircularArch.of(built, shape[1]).problem(), engine, moving=moving)

@@ -12,15 +12,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from worlds import classify, joint_motion, observed_mode, overlap_and_slip
 
 from blocksim import Arch, Assembly, JointState
-from blocksim.arch.modes import observed_mode
-from blocksim.blocks.joints import (
-    classify,
-    closed_joints,
-    joint_motion,
-    overlap_and_slip,
-)
+from blocksim.blocks.joints import closed_joints
 
 ARCH = Arch(half_angle=1.4, eta=0.2, voussoirs=8, radius=3.0)
 ASSEMBLY = ARCH.assembly()

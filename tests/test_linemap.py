@@ -7,12 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from arches import least
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 
-from blocksim.arch.theory import least_thickness
 from blocksim.view.linemap import line_map_figure
 from blocksim.view.mapshapes import ISO_DEGREES, iso_angles
 from blocksim.view.style import ISO
@@ -80,7 +80,7 @@ def test_lines_are_where_theory_has_them(whole: Figure) -> None:
         angle = PRINTED.get(name) or math.radians(float(name[:-1]))
         mu, eta = np.asarray(line.get_data(), dtype=float)[:, 5::97]
         for friction, height in zip(mu, eta, strict=True):
-            exact = least_thickness(angle, float(friction)).eta
+            exact = least(angle, float(friction)).eta_theory
             assert exact == pytest.approx(height, rel=1e-9)
 
 

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from arches import least
 from running import inside
 
 from blocksim import Mode
-from blocksim.arch.limit import least_thickness
 from blocksim.arch.theory import landmarks
 from blocksim.view.linemap import line_map_figure
 from blocksim.view.mapfigure import map_figure
@@ -142,11 +142,11 @@ def test_lines_divide_the_regions(weight: str) -> None:
         for each in lines[line][8:-6:6]:
             alpha = math.radians(each["half_angle_deg"])
             for share, modes in ((1.01, right), (0.985, left)):
-                built = least_thickness(alpha, each["mu"] * share, 400, weight)
-                assert built.mode in modes, (line, each)
+                built = least(alpha, each["mu"] * share, 400, weight)
+                assert built.mode_limit in modes, (line, each)
                 if modes == {Mode.RRR}:
                     # Without sliding friction is of no account.
-                    assert built.eta == pytest.approx(each["eta"], rel=2e-3)
+                    assert built.eta_limit == pytest.approx(each["eta"], rel=2e-3)
     for line in ("equal angles", "crown hinge"):
         for each in lines[line]:
             close = {"equal angles": each["beta_s_deg"], "crown hinge": 0.0}[line]

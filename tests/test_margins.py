@@ -7,14 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from arches import least
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from structure_cases import scenes
 
 from blocksim import Arch, Assembly, CircularArch, Problem, equilibrium, structure_of
-from blocksim.arch import limit
 from blocksim.arch.carried import carried_by_arch
-from blocksim.arch.limit.statics import least_thickness
 from blocksim.limit import margins, reactions, resultants, thrust_range
 from blocksim.limit.margins import crown
 
@@ -101,9 +100,9 @@ def test_arches_agree_with_their_own_statics(
 ) -> None:
     """Thickness over the least where weight does not change with it, and the same thrusts."""
     half = math.radians(alpha)
-    least = least_thickness(half, mu, voussoirs, "centreline").eta
-    assume(least and spare * least < 2)
-    arch = Arch(half_angle=half, eta=spare * least, voussoirs=voussoirs, weight=weight)
+    eta = least(half, mu, voussoirs).eta_limit
+    assume(eta and spare * eta < 2)
+    arch = Arch(half_angle=half, eta=spare * eta, voussoirs=voussoirs, weight=weight)
     problem = CircularArch.of(arch, mu).problem()
     found = margins(problem)
     if weight == "centreline":
@@ -236,10 +235,10 @@ def test_arches_have_forces_of_equilibrium_above_their_least_thickness(
     angle: float, mu: float, count: int, weight: str, ratio: float
 ) -> None:
     alpha = math.radians(angle)
-    least = limit.least_thickness(alpha, mu, count, weight).eta
+    eta = least(alpha, mu, count, weight).eta_limit
     # Three voussoirs can stand however thin they are.
-    assume(least is not None and 1e-3 < least * ratio <= 2)
-    arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
+    assume(eta is not None and 1e-3 < eta * ratio <= 2)
+    arch = Arch(half_angle=alpha, eta=eta * ratio, voussoirs=count, weight=weight)
     assembly = arch.assembly()
     forces = equilibrium(Problem(assembly=assembly, mu=mu)).forces
     assert (forces is not None) == (ratio > 1)

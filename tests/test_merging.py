@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from structure_cases import case, scenes
+from worlds import Simulation, hold, observe, onset
 
 from blocksim import (
     JointState,
@@ -26,9 +27,6 @@ from blocksim import (
     structure_of,
 )
 from blocksim.simulation.merging import Merging
-from blocksim.simulation.observation import hold, observe
-from blocksim.simulation.onset import onset
-from blocksim.simulation.simulated import Simulation
 from tests.assemblies import KINDS as DRAWN
 from tests.assemblies import box, sketch
 

@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 
 import pytest
-from arches import arch_at
+from arches import arch_at, least
 from click.testing import CliRunner
+from worlds import observe, observed_mode
 
 from blocksim import Arch, CircularArch, JointState, Mode, bracket, check
-from blocksim.arch import limit, theory
 from blocksim.arch.limit.mechanism import mechanism
-from blocksim.arch.modes import observed_mode
 from blocksim.cli import app
-from blocksim.simulation.observation import observe
 
 SEVEN = [
     (90, 0.7, 27, Mode.RRR),
@@ -33,9 +31,8 @@ def test_direct_confirms_every_mode_close_to_the_limit(
     angle: float, mu: float, count: int, mode: Mode
 ) -> None:
     arch = arch_at(1 - 1e-5, angle, mu, count)
-    continuous = theory.least_thickness(arch.half_angle, mu)
-    built = limit.least_thickness(arch.half_angle, mu, count)
-    assert mode == built.mode == continuous.mode
+    known = least(arch.half_angle, mu, count)
+    assert mode == known.mode_limit == known.mode
     assert mechanism(arch, mu).mode is mode
     seen = observe(CircularArch.of(arch, mu).problem(), "direct", moving=False)
     assert observed_mode(seen.joints, arch) is mode

@@ -7,12 +7,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 from arches import arch_at
+from worlds import Quality, Settings, Simulation, hold
 
 from blocksim import CircularArch, Problem, Verdict
-from blocksim.engines.base import Quality, Settings
 from blocksim.simulation.motion import EARLY, FINER, MOVED, QUIET, moving_run
-from blocksim.simulation.observation import hold
-from blocksim.simulation.simulated import Simulation
 
 SWEEPS = 10
 FASTEST = 1e-3

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from rocking import G, block, on_pulse, on_record, rocks
 from scipy.integrate import solve_ivp
+from worlds import DIRECT, Blocks, Simulation
 
 from analysis import convergence, housner, random_pulses
 from blocksim import (
@@ -27,16 +28,14 @@ from blocksim import (
     simulate,
     structure_of,
 )
-from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.report.recordings import recording_lines
-from blocksim.simulation.simulated import Simulation
 
 LONG = pytest.mark.long
 
 
 def pushed(problem: Problem, width: float, height: float, spin: float, step: float) -> Blocks:
     """A block that begins to turn about its lower left corner, with a velocity [rad/s]."""
-    world = Blocks(problem, replace(ENGINE.rule(problem.assembly), step=step))
+    world = Blocks(problem, replace(DIRECT.rule(problem.assembly), step=step))
     world.hold(1)
     turn = spin * problem.seconds
     half = np.array([width, height]) / 2 / problem.assembly.size
@@ -312,7 +311,7 @@ STEPS = (0.02, 0.01, 0.005, 0.0025)
 
 
 def world_of(assembly, mu, step):
-    settings = replace(ENGINE.rule(assembly), step=step)
+    settings = replace(DIRECT.rule(assembly), step=step)
     return Blocks(Problem(assembly=assembly, mu=mu), settings)
 
 

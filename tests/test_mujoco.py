@@ -13,6 +13,7 @@ from typing import cast
 import numpy as np
 import pytest
 from arches import arch_at, box, held_in, on_a_slope
+from worlds import Simulation, get_engine, hold, least_motion, observe
 
 from analysis.structure_cases import answered, questions
 from blocksim import (
@@ -26,13 +27,9 @@ from blocksim import (
     equilibrium,
 )
 from blocksim.ask.doctor import examine
-from blocksim.engines import get_engine
 from blocksim.engines.base import TakesForces
 from blocksim.engines.mujocoblocks import library
 from blocksim.engines.mujocostep import coulomb_step
-from blocksim.limit import least_motion
-from blocksim.simulation.observation import hold, observe
-from blocksim.simulation.simulated import Simulation
 
 pytest.importorskip("mujoco", exc_type=ImportError)
 

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from report_rows import ARCH, ROW, sliding
 from running import inside as blocksim
+from worlds import get_engine
 
 import blocksim as package
 from blocksim import CircularArch, InputError, load_recording, load_structure
 from blocksim.cli.studies import validation_lines, validation_table
 from blocksim.common.files import json_text
-from blocksim.engines import get_engine
 from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.report.answerwords import signed
 from blocksim.studies.validate import unasked

@@ -11,10 +11,10 @@ from dataclasses import replace
 
 import pytest
 from arches import arch_at, bracket_at
+from worlds import ContactProblem, hold, observe
 
 from blocksim import CircularArch, Verdict, check
-from blocksim.engines.contact import ContactProblem, Solution
-from blocksim.simulation.observation import hold, observe
+from blocksim.engines.contact import Solution
 
 TWO_ANSWERS = [
     (125.023, 0.8594, 10, "centreline"),

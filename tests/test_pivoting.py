@@ -11,13 +11,12 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from arches import least
 from lemke import lemke, pivoted
 from test_contact import chain, dense, step_of
+from worlds import DIRECT, Blocks, ContactProblem
 
 from blocksim import Arch, CircularArch, Problem, collapse, equilibrium
-from blocksim.arch import limit
-from blocksim.engines.contact import ContactProblem
-from blocksim.engines.direct import ENGINE, Blocks
 from tests.assemblies import drawn
 
 SAME = 1e-8
@@ -60,7 +59,7 @@ def released(
 
     with monkeypatch.context() as patch:
         patch.setattr(ContactProblem, "solve", kept)
-        world = Blocks(problem, ENGINE.rule(problem.assembly))
+        world = Blocks(problem, DIRECT.rule(problem.assembly))
         held = world.hold(1)
     pairs = world._pairs.T
     own, other, same = compared(
@@ -90,8 +89,7 @@ def test_arches_start_as_by_pivoting(largest: int, monkeypatch: pytest.MonkeyPat
     for _ in range(30):
         alpha, mu = math.radians(random.uniform(40, 155)), random.uniform(0.25, 2.0)
         count = int(random.integers(3, largest + 1))
-        least = limit.least_thickness(alpha, mu, count).eta
-        eta = random.choice(SIDES) * (least or 0.3)
+        eta = random.choice(SIDES) * (least(alpha, mu, count).eta_limit or 0.3)
         problem = CircularArch.of(
             Arch(half_angle=alpha, eta=min(eta, 2.0), voussoirs=count), mu
         ).problem()

@@ -13,10 +13,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from structure_cases import case, names, of_each_kind, scenes
 from test_drawn_joints import bricks, drawn
+from worlds import least_motion
 
 from blocksim import CircularArch, Problem, check, collapse, equilibrium, structure_of
 from blocksim.common.errors import Unsolved
-from blocksim.limit import least_motion, linear, programme
+from blocksim.limit import linear, programme
 from blocksim.limit.cones import Cones
 
 frictions = st.one_of(st.floats(0.05, 2.0), st.just(math.inf))

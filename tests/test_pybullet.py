@@ -16,6 +16,7 @@ from arches import ARCHES as OF_ENGINES
 from arches import arch_at, held_in
 from scipy.spatial.transform import Rotation
 from structure_cases import case, scenes
+from worlds import Engine, hold, observe
 
 from blocksim import (
     Arch,
@@ -27,8 +28,6 @@ from blocksim import (
     simulate,
     structure_of,
 )
-from blocksim.engines.base import Engine
-from blocksim.simulation.observation import hold, observe
 
 pytest.importorskip("pybullet", exc_type=ImportError)
 

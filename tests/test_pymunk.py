@@ -17,9 +17,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from arches import ARCHES as OF_ENGINES
-from arches import arch_at, box, on_a_slope
+from arches import arch_at, box, least, on_a_slope
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from worlds import Simulation, get_engine, least_motion, observe, observed_mode, onset
 
 from blocksim import (
     Arch,
@@ -30,13 +31,6 @@ from blocksim import (
     Verdict,
     simulate,
 )
-from blocksim.arch import limit
-from blocksim.arch.modes import observed_mode
-from blocksim.engines import get_engine
-from blocksim.limit import least_motion
-from blocksim.simulation.observation import observe
-from blocksim.simulation.onset import onset
-from blocksim.simulation.simulated import Simulation
 
 ARCHES = OF_ENGINES["pymunk"]
 SMALL = Arch(half_angle=math.pi / 2, eta=0.11, voussoirs=13)
@@ -64,7 +58,7 @@ def test_a_space_goes_without_pythons_collector() -> None:
 @pytest.mark.parametrize("eta", [0.05, 0.5, 1.0, 1.9])
 def test_purely_sliding_at_any_thickness(eta: float) -> None:
     arch = Arch(half_angle=math.pi / 2, eta=eta, voussoirs=15)
-    assert limit.least_thickness(arch.half_angle, 0.28, 15).eta is None
+    assert least(arch.half_angle, 0.28, 15).eta_limit is None
     seen = observe(CircularArch.of(arch, 0.28).problem(), "pymunk")
     assert seen.verdict is Verdict.COLLAPSES
     if eta >= 0.5:  # thin ones are overcome by turning, too

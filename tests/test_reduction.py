@@ -11,9 +11,10 @@ import math
 
 import numpy as np
 import pytest
-from arches import arch_at
+from arches import arch_at, least
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from worlds import Simulation, hold, observe, observed_mode, onset
 
 from blocksim import (
     Arch,
@@ -22,12 +23,7 @@ from blocksim import (
     bracket,
     check,
 )
-from blocksim.arch import limit
-from blocksim.arch.modes import observed_mode
 from blocksim.arch.reduction import MIRROR, Reduction
-from blocksim.simulation.observation import hold, observe
-from blocksim.simulation.onset import onset
-from blocksim.simulation.simulated import Simulation
 
 CASES = [
     (90, 0.7, 27, "centreline"),
@@ -240,7 +236,7 @@ def test_a_keystone_that_leaves_the_plane_takes_all_voussoirs():
 )
 def test_half_and_whole_agree(half_angle_deg, mu, voussoirs, weight, ratio):
     half_angle = math.radians(half_angle_deg)
-    eta = limit.least_thickness(half_angle, mu, voussoirs, weight).eta
+    eta = least(half_angle, mu, voussoirs, weight).eta_limit
     assume(eta is not None and 1e-3 < eta * ratio <= 2)
     arch = Arch(half_angle=half_angle, eta=eta * ratio, voussoirs=voussoirs, weight=weight)
     few, every = (
@@ -266,8 +262,8 @@ def test_pymunk_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs, we
         )
         assert seen.verdict is expected, seen.reason
         if expected is Verdict.COLLAPSES:
-            state = limit.least_thickness(arch.half_angle, mu, voussoirs, weight)
-            assert observed_mode(seen.joints, arch) is state.mode
+            mode = least(arch.half_angle, mu, voussoirs, weight).mode_limit
+            assert observed_mode(seen.joints, arch) is mode
 
 
 @pytest.mark.parametrize("method", ["direct", "pymunk"])

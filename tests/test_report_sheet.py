@@ -10,11 +10,11 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from arches import least as least_of
 from running import inside
 from windows import Windows
 
 from blocksim import Arch, CircularArch
-from blocksim.arch.limit import least_thickness
 from blocksim.limit import margins, reactions, thrust_range
 from blocksim.limit.margins import crown
 
@@ -93,7 +93,7 @@ def test_figures_of_an_arch_are_those_of_limit_analysis(pages: Path) -> None:
     # The whole weight, from the area of the sector.
     weight = 20 * 0.45 * arch.radius * 2 * arch.half_angle
     assert value(said["weight of all blocks"]) == pytest.approx(weight, rel=5e-4)
-    built = least_thickness(arch.half_angle, mu, 31, "sector").eta
+    built = least_of(arch.half_angle, mu, 31, "sector").eta_limit
     assert value(said["least thickness"]) == pytest.approx(built * arch.radius, abs=5e-4)
     factor = value(said["geometrical factor of safety"])
     assert factor == pytest.approx(arch.eta / built, rel=1e-4)

@@ -7,11 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from worlds import ground_level
 
 from analysis import rubble
 from blocksim import Arch, CircularArch, Recording, simulate
 from blocksim.engines.energy import Balance, energy
-from blocksim.engines.ground import ground_level
 from blocksim.engines.solids import prisms
 
 CASES = {case.number: case for case in rubble.cases(rubble.COUNT)}

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from space_cases import asked
+from worlds import observe
 
 import blocksim
 from blocksim import Verdict
-from blocksim.simulation.observation import observe
 
 ENGINES = ("pybullet", "mujoco")
 QUICK = ("block_topples_20", "plate_slides_25", "tower_102", "tower_113", "harmonic_4_out")

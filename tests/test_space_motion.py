@@ -13,12 +13,12 @@ from PIL import Image
 from running import inside
 from scipy.integrate import solve_ivp
 from space_cases import GROUND, NAMES, asked, box, case, problem_of
+from worlds import observe
 
 import blocksim
 from blocksim import Dome, InputError, Problem, Solid, extruded, structure_of
 from blocksim.engines.direct import USUAL
 from blocksim.engines.solid.stepping import SolidBlocks
-from blocksim.simulation.observation import observe
 from blocksim.view.film import Film
 
 

@@ -17,11 +17,11 @@ import pytest
 from running import inside
 from scipy.spatial.transform import Rotation
 from windows import wait_until
+from worlds import Quality, Settings
 
 import blocksim
 from blocksim import JointState, Recording
 from blocksim.blocks.record import to_record
-from blocksim.engines.base import Quality, Settings
 from blocksim.report.sheetpage import structure_page
 from blocksim.view.film import Film
 from blocksim.view.models import UPRIGHT, mechanism_model, write_model

@@ -13,11 +13,10 @@ import pytest
 from running import inside as blocksim
 from scipy.optimize import brentq
 from structure_cases import case
+from worlds import DIRECT, joint_motion
 
 from blocksim import InputError, JointState, bracket, load_recording, structure_of
 from blocksim.ask.spread import Spreading
-from blocksim.blocks.joints import joint_motion
-from blocksim.engines.direct import ENGINE
 from blocksim.engines.moving import OnMovingSupports
 from blocksim.limit.spreading import follow
 
@@ -266,7 +265,7 @@ def test_a_load_at_a_point_acts_while_supports_move() -> None:
     for point in ({}, {"point": [x, y]}):
         load = {"block": 5, "force": [0.0, -500.0], **point}
         problem = structure_of({**table, "dead": [load]})
-        world = OnMovingSupports(problem, ENGINE.rule(problem.assembly), 1e-3)
+        world = OnMovingSupports(problem, DIRECT.rule(problem.assembly), 1e-3)
         for _ in range(10):
             world.advance_once()
         after.append(world.poses())

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from arches import least
 from running import inside as blocksim
 
 from blocksim import Arch, CircularArch, InputError, Problem, check, equilibrium, structure_of
-from blocksim.arch.limit.statics import least_thickness
 from blocksim.ask.rest import FAR, SPEED, let_go
 from blocksim.limit.starting import Start, may_start, rates_of
 from blocksim.view.sheet import answer_sheet
@@ -41,7 +41,7 @@ def between_walls(lean: float, mu: float) -> Problem:
 
 def arch(mu: float, times: float, voussoirs: int = 3) -> Problem:
     """A wide arch of so many times its least thickness."""
-    eta = least_thickness(HALF_ANGLE, mu, voussoirs).eta
+    eta = least(HALF_ANGLE, mu, voussoirs).eta_limit
     return CircularArch.of(
         Arch(eta=eta * times, half_angle=HALF_ANGLE, voussoirs=voussoirs), mu
     ).problem()
@@ -157,7 +157,7 @@ def test_its_motion_is_none_with_other_friction() -> None:
 )
 def test_elsewhere_there_is_no_band(alpha: float, mu: float) -> None:
     half_angle = math.radians(alpha)
-    eta = least_thickness(half_angle, mu, 7).eta
+    eta = least(half_angle, mu, 7).eta_limit
     problem = CircularArch.of(
         Arch(half_angle=half_angle, eta=1.001 * eta, voussoirs=7), mu
     ).problem()

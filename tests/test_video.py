@@ -20,9 +20,9 @@ from PIL import Image
 from recorded import drawn_words, recorded
 from running import inside
 from scipy.spatial.transform import Rotation
+from worlds import classify
 
 from blocksim import Arch, CircularArch, InputError, JointState, Recording, load_recording
-from blocksim.blocks.joints import classify
 from blocksim.engines.ground import DEPTH
 from blocksim.view.camera import painting_order
 from blocksim.view.canvas import Canvas, Panel, Shape

@@ -9,17 +9,17 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from arches import least as known
 from matplotlib.figure import Figure
+from worlds import Simulation
 
 from blocksim import Arch, CircularArch, InputError, Verdict
-from blocksim.arch import limit, theory
 from blocksim.ask.methods import METHODS
 from blocksim.cli.studies import chart_table
 from blocksim.engines import ENGINES
 from blocksim.report import chart
 from blocksim.report.chart import read_points, write_chart, write_points
 from blocksim.simulation.motion import QUIET
-from blocksim.simulation.simulated import Simulation
 from blocksim.studies import refinement
 from blocksim.studies.chart import ChartArch, Point, front, measure, on_front
 from blocksim.studies.refinement import REFINEMENTS, let_go, look
@@ -45,9 +45,7 @@ def point(method: str, error: float, *seconds: float, knob: str = "tolerance") -
 
 
 def least(case: ChartArch, voussoirs: int) -> float:
-    eta = limit.least_thickness(case.half_angle, case.mu, voussoirs).eta
-    assert eta is not None
-    return eta
+    return known(case.half_angle, case.mu, voussoirs).eta_limit
 
 
 def arch(case: ChartArch, ratio: float) -> Arch:
@@ -56,7 +54,7 @@ def arch(case: ChartArch, ratio: float) -> Arch:
 
 
 def off_theory(case: ChartArch, voussoirs: int) -> float:
-    continuous = theory.least_thickness(case.half_angle, case.mu).eta
+    continuous = known(case.half_angle, case.mu).eta_theory
     return abs(least(case, voussoirs) / continuous - 1)
 
 

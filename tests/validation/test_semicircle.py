@@ -16,8 +16,8 @@
   doi     = {10.1016/0020-7403(69)90070-8},
 }
 
-Six printed digits, so half a unit of the sixth is asked for. Heyman's and Couplet's values
-are those of the same moment balances with a wrong inner hinge; 0.1075 at 54.5 deg is
+Six printed digits, so half a unit of the sixth is asked for. Couplet's value
+is that of the same moment balances with a wrong inner hinge; 0.1075 at 54.5 deg is
 Milankovitch's, with the weight at the centroids of the true voussoirs.
 """
 
@@ -27,11 +27,11 @@ import math
 
 import numpy as np
 import pytest
+from arches import least
 from derivations import lower_thrust, whole_thrust
 from scipy.optimize import brentq
 
 from blocksim import Mode
-from blocksim.arch import limit, theory
 from blocksim.arch.theory.regions import divide, divide_half_angle, first_sliding
 
 QUARTER = math.pi / 2
@@ -40,9 +40,9 @@ SIX = 5.001e-7
 
 
 def test_purely_rotational() -> None:
-    found = theory.least_thickness(QUARTER, 0.7)
-    assert found.modes == (Mode.RRR,)
-    assert found.eta == pytest.approx(0.107426, abs=SIX)
+    found = least(QUARTER, 0.7)
+    assert found.modes_theory == (Mode.RRR,)
+    assert found.eta_theory == pytest.approx(0.107426, abs=SIX)
     assert found.thrust == pytest.approx(0.621772, abs=SIX)
     assert math.degrees(found.beta_r) == pytest.approx(54.4963, abs=5.001e-5)
     assert found.beta_s is None
@@ -53,53 +53,35 @@ def test_friction_limits() -> None:
     mu = brentq(lambda mu: divide_half_angle(mu) - QUARTER, 0.1, 1.0, xtol=1e-14)
     assert mu == pytest.approx(0.309215, abs=SIX)
     assert divide(np.array([mu])).eta[0] == pytest.approx(0.200637, abs=SIX)
-    assert theory.least_thickness(QUARTER, 0.309214).modes == (Mode.SS,)
-    assert theory.least_thickness(QUARTER, 0.309214).eta is None
-    assert theory.least_thickness(QUARTER, 0.309216).modes == (Mode.SRR,)
-    assert theory.least_thickness(QUARTER, 0.395831).modes == (Mode.SRR,)
-    assert theory.least_thickness(QUARTER, 0.395833).modes == (Mode.RRR,)
+    assert least(QUARTER, 0.309214).modes_theory == (Mode.SS,)
+    assert least(QUARTER, 0.309214).eta_theory is None
+    assert least(QUARTER, 0.309216).modes_theory == (Mode.SRR,)
+    assert least(QUARTER, 0.395831).modes_theory == (Mode.SRR,)
+    assert least(QUARTER, 0.395833).modes_theory == (Mode.RRR,)
 
 
 def test_at_the_lower_friction_limit() -> None:
     mu = brentq(lambda mu: divide_half_angle(mu) - QUARTER, 0.1, 1.0, xtol=1e-15)
-    found = theory.least_thickness(QUARTER, mu)
-    assert set(found.modes) == {Mode.SRR, Mode.SS}
-    assert found.eta == pytest.approx(0.200637, abs=SIX)
+    found = least(QUARTER, mu)
+    assert set(found.modes_theory) == {Mode.SRR, Mode.SS}
+    assert found.eta_theory == pytest.approx(0.200637, abs=SIX)
     assert found.thrust == pytest.approx(0.485714, abs=SIX)
     assert math.degrees(found.beta_r) == pytest.approx(60.5134, abs=5.001e-5)
     assert math.degrees(found.beta_s) == pytest.approx(28.6362, abs=5.001e-5)
 
 
 def test_milankovitch_weight() -> None:
-    found = theory.least_thickness(QUARTER, math.inf, "sector")
-    assert found.eta == pytest.approx(0.1075, abs=5e-5)
+    found = least(QUARTER, math.inf, weight="sector")
+    assert found.eta_theory == pytest.approx(0.1075, abs=5e-5)
     assert math.degrees(found.beta_r) == pytest.approx(54.5, abs=0.05)
-    fine = limit.least_thickness(QUARTER, math.inf, 600, "sector")
-    assert fine.eta == pytest.approx(0.107477, abs=2e-6)
+    fine = least(QUARTER, math.inf, 600, "sector")
+    assert fine.eta_limit == pytest.approx(0.107477, abs=2e-6)
 
 
-def hinged_at(beta: float) -> float:
-    """Thickness at which (1) and (3) agree for a given inner hinge."""
-    return brentq(
-        lambda eta: lower_thrust(beta, eta) - whole_thrust(QUARTER, eta), 1e-6, 1, xtol=1e-14
+def test_couplet_is_unsafe() -> None:
+    """Hinges at 45 deg: 0.101; of Heyman's, at 58.8 deg, `test_remarks_2024` tells."""
+    couplet = brentq(
+        lambda eta: lower_thrust(math.pi / 4, eta) - whole_thrust(QUARTER, eta), 1e-6, 1
     )
-
-
-def test_couplet_and_heyman_are_unsafe() -> None:
-    """Hinges at 45 deg (Couplet) and 58.8 deg (Heyman): 0.101 and 0.1060."""
-    least = theory.least_thickness(QUARTER, math.inf).eta
-    couplet = hinged_at(math.pi / 4)
     assert couplet == pytest.approx(0.101, abs=5e-4)
-
-    def heyman(beta: float) -> float:
-        # Heyman's tangency leaves out eta/(2 - eta) of (4).
-        return beta / math.tan(beta) - lower_thrust(beta, heyman_eta(beta))
-
-    def heyman_eta(beta: float) -> float:
-        wanted = beta / math.tan(beta)
-        return brentq(lambda eta: whole_thrust(QUARTER, eta) - wanted, 1e-6, 1.9)
-
-    beta = brentq(heyman, math.radians(55), math.radians(62))
-    assert math.degrees(beta) == pytest.approx(58.8, abs=0.05)
-    assert heyman_eta(beta) == pytest.approx(0.1060, abs=5e-5)
-    assert couplet < heyman_eta(beta) < least
+    assert couplet < least(QUARTER, math.inf).eta_theory

@@ -17,12 +17,10 @@ import numpy as np
 import pytest
 from own_balance import violation
 from scipy.optimize import brentq
+from worlds import Simulation, get_engine, onset
 
 from blocksim import Assembly, Block, Joint, Problem, Verdict
-from blocksim.engines import get_engine
 from blocksim.simulation.motion import LONGEST, MOVED, QUIET
-from blocksim.simulation.onset import onset
-from blocksim.simulation.simulated import Simulation
 
 BELOW, ABOVE = 0.99, 1.01
 SLOPES = [5.0, 20.0, 40.0]
