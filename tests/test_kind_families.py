@@ -5,10 +5,16 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from kind_cases import CATENARY, KINDS, LEAST, PIERS
+from own_bridge import Bridge
+from running import inside
 from running import inside as blocksim
+from scipy.integrate import quad
+from scipy.optimize import linprog
 from structure_cases import case
 
 from blocksim import (
@@ -228,3 +234,143 @@ def test_kinds_are_listed() -> None:
     assert width.count("pier_width") == 2, "it may be bracketed over"
     courses = next(row for row in rows if row.startswith("pier_courses"))
     assert courses.count("pier_courses") == 1
+
+
+BIG = Bridge(span=6.0, rise=3.0, thick=0.5, count=20, fill=0.5)
+SMALL = Bridge(span=4.0, rise=2.0, thick=0.4, count=14, fill=0.5 + 3.5 - 2.4)
+"""Half circles: level springings on a pier without a saddle; one road over both."""
+WIDE, HIGH = 1.4, 2.5
+VIADUCT = f"""
+kind = "arcade"
+friction = 0.6
+density = 20e3
+spans = 2
+pier_width = {WIDE}
+pier_height = {HIGH}
+
+[arch]
+kind = "circular-arch"
+span = 6.0
+rise = 3.0
+thickness = 0.5
+voussoirs = 20
+fill = 0.5
+
+[[each_span]]
+
+[[each_span]]
+span = 4.0
+rise = 2.0
+thickness = 0.4
+voussoirs = 14
+"""
+
+
+def turned(loads: np.ndarray, shift: float) -> np.ndarray:
+    """Forces of an arch that is moved to the right: moments about the same origin."""
+    moved = loads.copy()
+    moved[:, 2] += shift * loads[:, 1]
+    return moved
+
+
+def own_factor(place: float, weight: float) -> float:
+    """Load factor of a wheel on the left span: both arches and the pier in one programme."""
+    # About the middle of the pier's head, which is right of that of the whole.
+    shifts, centre = (-WIDE / 2 - 3.0, WIDE / 2 + 2.0), 6.0 + WIDE / 2 - (10.0 + WIDE) / 2
+    blocks: list[np.ndarray] = []
+    columns: list[np.ndarray] = []
+    for bridge, shift, end in ((BIG, shifts[0], 1), (SMALL, shifts[1], 0)):
+        mine = bridge.columns().T.reshape(-1, bridge.count, 3)
+        moved = np.array([turned(each, shift) for each in mine])
+        # What its springing on the pier does to the pier is the reaction to what it does here.
+        on_pier = np.zeros((len(moved), 3))
+        at = slice(-4, None) if end else slice(0, 4)
+        on_pier[at] = -moved[at].sum(axis=1)
+        blocks.append(moved)
+        columns.append(on_pier)
+    count = BIG.count + SMALL.count + 1
+    parts: list[np.ndarray] = []
+    for which, (moved, on_pier) in enumerate(zip(blocks, columns, strict=True)):
+        for one, other in zip(moved, on_pier, strict=True):
+            column = np.zeros((count, 3))
+            start = 0 if which == 0 else BIG.count
+            column[start : start + len(one)] = one
+            column[-1] = other
+            parts.append(column.ravel())
+    for x in (-WIDE / 2, WIDE / 2):
+        for side in (0.6, -0.6):
+            column = np.zeros((count, 3))
+            column[-1] = side, 1.0, x * 1.0 + HIGH * side
+            parts.append(column.ravel())
+    dead = np.zeros((count, 3))
+    dead[: BIG.count] = turned(BIG.dead(), shifts[0])
+    dead[BIG.count : -1] = turned(SMALL.dead(), shifts[1])
+    edges = -WIDE / 2 + 0.5, WIDE / 2 - 0.4
+    over = 20.0 * (BIG.road - 0.0) * (edges[1] - edges[0])
+    dead[-1] = 0.0, -20.0 * WIDE * HIGH - over, -over * sum(edges) / 2
+    live = np.zeros((count, 3))
+    live[: BIG.count] = weight * turned(BIG.wheel(place - centre - shifts[0]), shifts[0])
+    matrix = np.hstack([np.array(parts).T, live.reshape(-1, 1)])
+    cost = np.append(np.zeros(len(parts)), -1.0)
+    found: Any = linprog(cost, A_eq=matrix, b_eq=-dead.ravel(), bounds=(0, None))
+    assert found.status == 0
+    return float(-found.fun)
+
+
+@pytest.mark.parametrize("place", [-3.1, -4.3])
+def test_two_unequal_spans_on_a_pier(tmp_path: Path, place: float) -> None:
+    path = tmp_path / "viaduct.toml"
+    path.write_text(VIADUCT)
+    wheel = ("--point-load", str(place), "50")
+    done = inside("bracket", str(path), *wheel, "--over", "load", "--json")
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)["limit"]
+    assert found == pytest.approx(own_factor(place, 50.0), rel=1e-6)
+
+
+ALIKE = {
+    "kind": "arcade",
+    "arch": {"kind": "circular-arch", "span": 6, "rise": 2, "thickness": 0.4, "fill": 0.3},
+    "spans": 3,
+    "pier_width": 1.0,
+    "friction": 0.7,
+    "density": 2e4,
+}
+"""Three spans that are alike."""
+
+
+def test_equal_tables_are_the_arcade_without_them() -> None:
+    plain = structure_of(ALIKE)
+    spans, piers = [{}, {"span": 6.0, "rise": 2.0}], [{"width": 1.0}, {"height": 3.0}]
+    told = structure_of({**ALIKE, "each_span": spans, "each_pier": piers})
+    assert len(told.assembly.joints) == len(plain.assembly.joints)
+    assert told.applied_forces() == pytest.approx(plain.applied_forces(), rel=1e-9, abs=1e-12)
+
+
+def test_piers_and_fill_of_their_own() -> None:
+    """Weights by hand: piers, fill of another density over one span up to the same road."""
+    spans = [{"fill_density": 0.5}, {}, {"span": 4.0, "rise": 1.5}]
+    piers = [{"width": 1.0, "height": 2.0}, {"width": 1.5, "height": 4.0}]
+    problem = structure_of({**ALIKE, "each_span": spans, "each_pier": piers})
+    weights = {block.name: block.mass * 9.81 / 1e3 for block in problem.assembly.blocks}
+    assert weights["pier 1 1"] == pytest.approx(20 * 1.0 * 2.0)
+    assert weights["pier 2 1"] == pytest.approx(20 * 1.5 * 4.0)
+    down = np.zeros(len(problem.assembly.blocks))
+    for load in problem.dead:
+        down[load.blocks[0]] -= load.force[1] / 1e3
+    names = [block.name or "" for block in problem.assembly.blocks]
+    halves = [
+        sum(each for each, name in zip(down, names, strict=True) if name.startswith(f"{k}."))
+        for k in (1, 2, 3)
+    ]
+    assert halves[0] == pytest.approx(halves[1] / 2)
+    # The extrados of the third: a circle through its crown, 0.8 m lower than the road's.
+    inner = (2.0**2 + 1.5**2) / 3.0
+    outer, angle = inner + 0.4, math.atan2(2.0, inner - 1.5)
+    road = inner - 1.5 + 2.0 + 0.4 + 0.3
+
+    def depth(x: float) -> float:
+        return road - math.sqrt(outer**2 - x * x)
+
+    reach = outer * math.sin(angle)
+    assert halves[2] == pytest.approx(20 * quad(depth, -reach, reach)[0], rel=1e-7)

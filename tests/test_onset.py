@@ -7,14 +7,16 @@ An equilibrium exists above the least thickness: that is exact, by limit analysi
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
+import numpy as np
 import pytest
 from arches import arch_at, bracket_at
-from worlds import ContactProblem, hold, observe
+from worlds import ContactProblem, Quality, Settings, Simulation, hold, observe
 
-from blocksim import CircularArch, Verdict, check
+from blocksim import CircularArch, Problem, Verdict, check, simulate
 from blocksim.engines.contact import Solution
+from blocksim.simulation.motion import EARLY, FINER, MOVED, QUIET, moving_run
 
 TWO_ANSWERS = [
     (125.023, 0.8594, 10, "centreline"),
@@ -103,3 +105,168 @@ def test_what_cannot_be_found_is_said_in_words(monkeypatch: pytest.MonkeyPatch) 
         assert seen.verdict is Verdict.UNDECIDED
         assert "contact forces could not be found" in seen.reason
         assert "nan" not in seen.reason
+
+
+SWEEPS = 10
+FASTEST = 1e-3
+"""Rate at which blocks creep with that many sweeps."""
+
+
+@dataclass
+class Creeping:
+    """Blocks that all move at one rate, which falls with the square of the sweeps."""
+
+    problem: Problem
+    settings: Settings
+    time: float = field(default=0.0, init=False)
+
+    def hold(self, sweeps: int) -> np.ndarray:
+        """Rest."""
+        del sweeps
+        return np.zeros((len(self.problem.assembly.blocks), 3))
+
+    def advance(self, steps: int) -> None:
+        """Creep on."""
+        self.time += steps * self.settings.step
+
+    def poses(self) -> np.ndarray:
+        """Move along x."""
+        assembly = self.problem.assembly
+        poses = np.column_stack([assembly.centres / assembly.size, self.hold(0)[:, 0]])
+        poses[:, 0] += FASTEST * (SWEEPS / self.settings.sweeps) ** 2 * self.time
+        return poses
+
+    def quality(self) -> Quality:
+        """Know nothing."""
+        return Quality()
+
+
+def creeping(repeats: int) -> Simulation:
+    """An arch in an engine whose arches creep."""
+    made = Simulation.of(CircularArch.of(arch_at(1.1, 90, 0.9, 5), 0.9).problem(), "direct")
+    # As a whole it overlaps its supports by nothing: blocks slide along the springings.
+    settings = replace(made.settings, sweeps=SWEEPS, repeats=repeats, rest=1e-5, noise=1.0)
+    return replace(made, engine=replace(made.engine, build=Creeping), settings=settings)
+
+
+@pytest.mark.parametrize(
+    ("repeats", "rests", "sweeps", "expected"),
+    [
+        # 1e-3 in a unit of time is a fall, and a 16th of it neither that nor rest.
+        (3, False, SWEEPS, Verdict.COLLAPSES),
+        (3, True, SWEEPS * FINER, Verdict.UNDECIDED),
+        (0, True, SWEEPS, Verdict.COLLAPSES),
+    ],
+)
+def test_what_falls_though_it_can_rest_is_asked_again(
+    repeats: int, rests: bool, sweeps: int, expected: Verdict
+) -> None:
+    asked: list[Creeping] = []
+    simulation = creeping(repeats)
+    motion = moving_run(simulation, simulation.world(), asked.append, rests=rests)
+    assert motion.verdict is expected
+    assert motion.recording.settings.sweeps == sweeps
+    assert len(asked) == (sweeps > SWEEPS)
+    # With the first sweeps it falls by then; found at rest it is not watched for longer.
+    assert motion.recording.times[-1] < QUIET + 0.3
+
+
+@pytest.mark.parametrize("rests", [False, True])
+def test_a_film_of_what_rests_is_no_film_of_a_fall(rests: bool) -> None:
+    simulation, until = creeping(3), 8.0
+    motion = moving_run(
+        simulation, simulation.world(), lambda _: None, rests=rests, until=until
+    )
+    assert motion.recording.times[-1] == pytest.approx(until, abs=0.1)
+    fell = motion.recording.displacement[-1] > MOVED
+    assert bool(fell) is not rests
+
+
+@pytest.mark.parametrize("below", [1e-8, 1e-6, 1e-4, 1e-2])
+def test_few_looks_suffice_and_none_is_too_late_for_the_mechanism(below: float) -> None:
+    """What falls is first seen to have moved while the motion still is the mechanism."""
+    held = hold(CircularArch.of(arch_at(1 - below, 90, 0.7, 27), 0.7).problem(), "direct")
+    recording = held.release().recording
+    moved = recording.displacement
+    assert EARLY < moved[moved > EARLY][0] < 1.5 * EARLY
+    assert len(recording.times) < 45
+
+
+SIDES = [(0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)]
+
+
+def problem_at(ratio: float, angle: float, mu: float, count: int) -> Problem:
+    return CircularArch.of(arch_at(ratio, angle, mu, count), mu).problem()
+
+
+def moved_away(problem: Problem, distance: float) -> Problem:
+    """The same built elsewhere, by a distance to the right [size]."""
+    assembly = problem.assembly
+    by = np.array([distance * assembly.size, 0.0])
+    blocks = [
+        replace(block, vertices=block.vertices + by, centre=block.centre + by)
+        for block in assembly.blocks
+    ]
+    joints = [
+        replace(joint, inner=joint.inner + by, outer=joint.outer + by)
+        for joint in assembly.joints
+    ]
+    away = replace(assembly, blocks=tuple(blocks), joints=tuple(joints))
+    return Problem(assembly=away, mu=problem.mu)
+
+
+@pytest.mark.parametrize(("ratio", "right"), SIDES)
+@pytest.mark.parametrize(
+    ("engine", "angle", "count", "short"),
+    [("pymunk", 90, 27, 5), ("pybullet", 45, 7, 80)],
+)
+def test_sweeps_allowed_to_slender_arches(
+    engine: str, angle: float, count: int, short: int, ratio: float, right: Verdict
+) -> None:
+    """The shorter the joints, the more sweeps; with too few of them it is undecided."""
+    pytest.importorskip(engine, exc_type=ImportError)
+    problem = problem_at(ratio, angle, 0.9, count)
+    few = {"hold_sweeps": short * count**2}
+    assert check(problem, method=engine, reduce=False).verdict is right
+    seen = check(problem, method=engine, reduce=False, settings=few)
+    assert seen.verdict in (right, Verdict.UNDECIDED)
+    if engine == "pybullet":
+        assert "not converged" in seen.reason
+
+
+@pytest.mark.parametrize("engine", ["direct", "pymunk", "pybullet"])
+@pytest.mark.parametrize(("ratio", "right"), SIDES)
+def test_far_from_the_origin(engine: str, ratio: float, right: Verdict) -> None:
+    """Beyond, round-off would hide what starts to move, or throw blocks."""
+    pytest.importorskip("pybullet" if engine == "pybullet" else "numpy", exc_type=ImportError)
+    problem = problem_at(ratio, 90, 0.7, 9)
+    farthest = simulate(problem, method=engine, duration=0.01).settings.farthest
+    near, far = (
+        check(moved_away(problem, share * farthest), method=engine) for share in (0.99, 1.01)
+    )
+    assert near.verdict is right
+    assert "from the origin" not in near.reason
+    assert far.verdict is Verdict.UNDECIDED
+    assert "from the origin" in far.reason
+
+
+@pytest.mark.parametrize(
+    ("step", "sweeps", "word"),
+    [
+        (1.9, 1, ""),
+        (0.5, 0.5, ""),
+        (2.1, 2.1, "time step 2.1"),
+        (1, 0.4, "sweeps 0.4"),
+        (1.9, 0.8, "sweeps 0.4"),
+    ],
+)
+def test_settings_beyond_those_measured_are_named(
+    step: float, sweeps: float, word: str
+) -> None:
+    """Of a moving run: what a setting does to the onset test shows in that itself."""
+    problem = problem_at(1.02, 90, 0.7, 27)
+    rule = simulate(problem, method="pymunk", duration=0.01).settings
+    chosen = {"step": rule.step * step, "sweeps": round(rule.sweeps * sweeps)}
+    seen = check(problem, method="pymunk", reduce=False, settings=chosen)
+    assert ("to be sure" in seen.reason) == (word != "")
+    assert word in seen.reason

@@ -12,11 +12,18 @@ from collections import Counter
 import numpy as np
 import pytest
 from arches import least
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from lemke import lemke, pivoted
-from test_contact import chain, dense, step_of
+from scipy.spatial import ConvexHull
 from worlds import DIRECT, Blocks, ContactProblem
 
 from blocksim import Arch, CircularArch, Problem, collapse, equilibrium
+from blocksim.engines.contact.banded import Bands
+from blocksim.engines.contact.coulomb import Friction
+from blocksim.engines.contact.meeting import Polygons
+from blocksim.engines.contact.path_following import path_from_apart
+from blocksim.engines.contact.step import Step
 from tests.assemblies import drawn
 
 SAME = 1e-8
@@ -132,3 +139,174 @@ def test_pivoting_solves_a_problem_of_which_the_answer_is_known() -> None:
     found = lemke(matrix.T, -np.ones(size))
     assert found == pytest.approx([0.0] * (size - 1) + [1.0])
     assert lemke(np.array([[-1.0]]), np.array([-1.0])) is None
+
+
+def chain(seed, blocks):
+    """Blocks in a row between two walls, touching at random places in random directions.
+
+    What their velocities would be without acceleration comes from velocities of the blocks,
+    so that stopping them all is always possible.
+    """
+    random = np.random.default_rng(seed)
+    before, after = np.arange(-1, blocks), np.append(np.arange(blocks), -1)
+    if blocks > 3:
+        # Two that are no neighbours in the row.
+        before, after = np.append(before, 0), np.append(after, blocks - 1)
+    joints = len(before)
+    angle = random.uniform(-0.3, 0.3, (joints, 2))
+    angle[:, 1] = angle[:, 0] + random.choice([0.0, 0.05], joints)
+    normal = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    tangent = np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
+    axes = np.concatenate([normal, tangent], axis=1)
+    arms = random.uniform(-1, 1, (joints, 2, 2, 2))
+    arms = np.concatenate([arms, arms], axis=1)
+    turn = arms[..., 0] * axes[:, :, None, 1] - arms[..., 1] * axes[:, :, None, 0]
+    rows = np.concatenate([-axes, -turn[:, :, :1], axes, turn[:, :, 1:]], axis=-1)
+    velocities = np.vstack([random.normal(size=(blocks, 3)), np.zeros(3)])
+    pairs = np.stack([before, after], axis=1)
+    rates = np.matmul(rows, velocities[pairs].reshape(joints, 6, 1))[:, :, 0]
+    rates[:, :2] += random.uniform(0, 2, (joints, 2)) * random.integers(0, 2, (joints, 2))
+    mass = np.repeat(random.uniform(0.5, 2, (blocks, 1)), 3, axis=1)
+    mass[:, 2] *= 0.2
+    free = np.tile([0.0, -1.0, 0.0], (blocks, 1))
+    return before, after, mass, rows, rates, free
+
+
+def step_of(before, after, mass, rows, rates, free, mu):
+    """The same as a step, in accelerations times the root of mass."""
+    bands = Bands(before, after, len(mass))
+    return Step(
+        bands=bands,
+        rows=rows * bands.of_joints(1 / np.sqrt(mass).ravel())[:, None, :],
+        rates=rates,
+        free=(free * np.sqrt(mass)).ravel(),
+        friction=Friction.of(mu, len(before)),
+    )
+
+
+def dense(before, after, blocks, rows):
+    """Rows as a matrix on all velocities, shape (joints, 4, 3 blocks)."""
+    matrix = np.zeros((*rows.shape[:2], 3 * blocks))
+    for joint, pair in enumerate(zip(before, after, strict=True)):
+        for side, block in enumerate(pair):
+            if block >= 0:
+                part = rows[joint, :, 3 * side : 3 * side + 3]
+                matrix[joint, :, 3 * block : 3 * block + 3] += part
+    return matrix
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.integers(0, 2**32), st.integers(1, 8), st.floats(0.05, 3.0))
+def test_a_solution_obeys_newton_signorini_and_coulomb(seed, blocks, mu):
+    before, after, mass, rows, rates, free = chain(seed, blocks)
+    solution = ContactProblem(before, after, mass, mu).solve(rows, rates, free, None, 1e-12)
+    matrix = dense(before, after, blocks, rows)
+    x = solution.acceleration.ravel()
+    pull = np.einsum("jk,jkx->x", solution.forces, matrix)
+    scale = max(1.0, np.abs(x).max())
+    assert np.abs(mass.ravel() * (x - free.ravel()) - pull).max() < 1e-7 * scale
+    ahead = rates + matrix @ x
+    pressure, friction = solution.forces[:, :2], solution.forces[:, 2:]
+    opening, slip = ahead[:, :2], ahead[:, 2:]
+    assert pressure.min() >= 0
+    assert opening.min() > -1e-8 * scale
+    assert np.minimum(pressure, opening).max() < 1e-8 * scale
+    assert (np.abs(friction) - mu * pressure).max() < 1e-7 * scale
+    slides = np.abs(slip) > 1e-7 * scale
+    assert (
+        np.abs(friction + mu * pressure * np.sign(slip))[slides].max(initial=0) < 1e-6 * scale
+    )
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.integers(0, 2**32), st.integers(1, 6))
+def test_every_joint_keeps_the_law_of_its_own_friction(seed, blocks):
+    before, after, mass, rows, rates, free = chain(seed, blocks)
+    mu = np.random.default_rng(seed).choice([0.0, 0.6, 40.0, 1e7, np.inf], len(before))
+    solution = ContactProblem(before, after, mass, mu).solve(rows, rates, free, None, 1e-12)
+    x = solution.acceleration.ravel()
+    matrix = dense(before, after, blocks, rows)
+    pull = np.einsum("jk,jkx->x", solution.forces, matrix)
+    scale = max(1.0, np.abs(x).max(), np.abs(solution.forces).max())
+    assert np.abs(mass.ravel() * (x - free.ravel()) - pull).max() < 1e-7 * scale
+    ahead = rates + matrix @ x
+    pressure, friction = solution.forces[:, :2], solution.forces[:, 2:]
+    opening, slip = ahead[:, :2], ahead[:, 2:]
+    assert pressure.min() >= 0
+    assert opening.min() > -1e-7 * scale
+    assert np.minimum(pressure, opening).max() < 1e-7 * scale
+    # No friction across a gap, and none that helps the slip.
+    assert np.minimum(np.abs(friction), opening).max() < 1e-6 * scale
+    assert np.minimum(friction * np.sign(slip), np.abs(slip)).max() < 1e-6 * scale
+    free_of = mu == np.inf
+    assert np.minimum(pressure, np.abs(slip))[free_of].max(initial=0) < 1e-6 * scale
+    bound = mu[~free_of, None] * pressure[~free_of]
+    most = np.maximum(1.0, mu[~free_of, None]) * 1e-6 * scale
+    assert (np.abs(friction[~free_of]) - bound - most).max(initial=-1) < 0
+
+
+def test_without_slip_a_pushed_block_turns_over_its_corner_and_does_not_slide():
+    # A unit square on the ground, gravity leaning: it turns if the lean is beyond 45 degrees.
+    mass = np.array([[1.0, 1.0, 1 / 6]])
+    corners = np.array([[-0.5, -0.5], [0.5, -0.5]])
+    rows = np.zeros((1, 4, 6))
+    for end, (x, y) in enumerate(corners):
+        rows[0, end, 3:] = 0, 1, x
+        rows[0, 2 + end, 3:] = 1, 0, -y
+    problem = ContactProblem(np.array([-1]), np.array([0]), mass, np.inf)
+    for lean in (0.3, 0.78, 0.79, 1.2, 1.57):
+        pull = np.array([[np.sin(lean), -np.cos(lean), 0.0]])
+        found = problem.solve(rows, np.zeros((1, 4)), pull)
+        # About the corner: moment sin - cos over 2, inertia 1/6 + 1/2, clockwise.
+        turning = max(0.0, (np.sin(lean) - np.cos(lean)) / 2 / (2 / 3))
+        exact = [turning / 2, turning / 2, -turning]
+        assert np.abs(found.acceleration[0] - exact).max() < 1e-9
+    # Lifted, it takes no friction.
+    lifted = problem.solve(rows, np.zeros((1, 4)), np.array([[0.2, 0.5, 0.0]]))
+    assert np.abs(lifted.acceleration[0] - [0.2, 0.5, 0.0]).max() < 1e-9
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.integers(0, 2**32), st.integers(1, 8), st.floats(0.05, 5.0))
+def test_the_path_from_apart_always_arrives(seed, blocks, mu):
+    before, after, mass, rows, rates, free = chain(seed, blocks)
+    step = step_of(before, after, mass, rows, rates, free, mu)
+    end = path_from_apart(step)
+    assert step.residual(end.x, end.forces) < 1e-5
+    assert 0 < end.systems < 40 * len(rows)
+
+
+def convex(random):
+    """The hull of a few random points, about the mean of its corners."""
+    points = random.normal(size=(random.integers(3, 9), 2)) * random.uniform(0.3, 1, 2)
+    corners = points[ConvexHull(points).vertices]
+    return corners - corners.mean(axis=0)
+
+
+def depth_in(corners, polygon):
+    """How far the deepest corner is inside a convex polygon; negative if none is inside."""
+    edges = np.roll(polygon, -1, axis=0) - polygon
+    off = corners[:, None] - polygon
+    heights = edges[:, 0] * off[..., 1] - edges[:, 1] * off[..., 0]
+    return float((heights / np.hypot(*edges.T)).min(axis=1).max())
+
+
+def test_a_corner_inside_a_polygon_is_a_contact():
+    """However many corners the other one has."""
+    random, count = np.random.default_rng(5), 2000
+    shapes = [convex(random) for _ in range(2 * count)]
+    poses = np.column_stack(
+        [random.normal(size=(2 * count, 2)), random.uniform(0, 6, 2 * count)]
+    )
+    one, other = np.arange(count), np.arange(count, 2 * count)
+    found = Polygons(shapes, []).touch(poses, one, other).gap.min(axis=1)
+    placed = [
+        corners @ np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+        + (x, y)
+        for corners, (x, y, turn) in zip(shapes, poses, strict=True)
+    ]
+    pairs = [(placed[a], placed[b]) for a, b in zip(one, other, strict=True)]
+    deepest = np.array([max(depth_in(a, b), depth_in(b, a)) for a, b in pairs])
+    inside = deepest > 1e-9
+    assert inside.sum() > 400
+    assert (found[inside] < 0).all()

@@ -119,7 +119,7 @@ def test_what_is_killed_leaves_no_process_and_loses_no_row(
     assert {name: found[name] for name in uninterrupted} == uninterrupted
 
 
-# Of `validate`, which ends by the same code, test_processes has it in every run.
+# Of `validate`, which ends by the same code, test_interrupts has it in every run.
 @pytest.mark.long
 def test_a_terminated_sweep_ends_with_one_line(tmp_path: Path) -> None:
     asked, out = written(tmp_path, FOR_MINUTES), tmp_path / "out"

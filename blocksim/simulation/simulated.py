@@ -261,7 +261,7 @@ class Simulation(Generic[Blocks]):
 
         Measured over five arches in pymunk and pybullet: blocks begin to overlap at four times
         the step with half the sweeps, and at a quarter of the sweeps, in a step or in the same
-        time. `tests/test_stability.py` has both sides.
+        time. `tests/test_onset.py` has both sides.
         """
         if self.problem.in_space:
             return ""
