@@ -9,10 +9,12 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from itertools import product
 from typing import Any
 
+import numpy as np
 import pytest
-from arches import ARCHES, arch_at, bracket_at, held_in, least
+from arches import ARCHES, arch_at, box, bracket_at, held_in, least, on_a_slope
 from images import mirrored, renumbered
 from worlds import Settings, get_engine, observe, observed_mode
 
@@ -130,3 +132,54 @@ def test_size_and_material_change_nothing(
     said, start = verdict(engine, replace(arch, **other).assembly(), 0.7)
     assert said is (Verdict.STANDS if side > 0 else Verdict.COLLAPSES)
     assert start == pytest.approx(verdict(engine, arch.assembly(), 0.7)[1], abs=1e-6)
+
+
+FINE = {"pymunk": 1e-6, "mujoco": 1e-5}
+"""Of accelerations [g]; of MuJoCo, whose contacts are soft, of those that are slow."""
+
+
+def started(engine: str, assembly: Assembly, mu: float) -> tuple[Verdict, Any]:
+    """Verdict, and the acceleration of each block."""
+    seen, found = held_in(get_engine(engine), assembly, mu, sweeps=9000)
+    return seen, found[:, :3]
+
+
+@pytest.mark.parametrize("degrees", [5, 20, 45])
+@pytest.mark.parametrize(
+    ("engine", "share"), [*product(FINE, (1.0005, 0.9995)), ("pymunk", 0.5)]
+)
+def test_a_block_slides_down_what_is_steeper_than_its_friction(
+    engine: str, degrees: float, share: float
+) -> None:
+    """Closed form: g (sin phi - mu cos phi), straight downhill, without turning."""
+    angle = math.radians(degrees)
+    mu = share * math.tan(angle)
+    seen, start = started(engine, on_a_slope(angle, 1.0, 0.2), mu)
+    assert seen is (Verdict.STANDS if share > 1 else Verdict.COLLAPSES)
+    rate = max(0.0, math.sin(angle) - mu * math.cos(angle))
+    downhill = [-rate * math.cos(angle), -rate * math.sin(angle), 0.0]
+    assert start[0] == pytest.approx(downhill, abs=FINE[engine])
+
+
+@pytest.mark.parametrize("degrees", [10, 20, 40])
+@pytest.mark.parametrize(("engine", "share"), [*product(FINE, (0.999, 1.001)), ("pymunk", 3.0)])
+def test_a_block_tips_where_its_weight_leaves_its_base(
+    engine: str, degrees: float, share: float
+) -> None:
+    """Closed form: moment of the weight about the lower corner over the inertia there."""
+    assembly = on_a_slope(math.radians(degrees), 1.0, share / math.tan(math.radians(degrees)))
+    seen, start = started(engine, assembly, 50.0)
+    assert seen is (Verdict.STANDS if share < 1 else Verdict.COLLAPSES)
+    block = assembly.blocks[0]
+    x, y = block.centre  # the lower corner is at the origin
+    spin = max(0.0, -block.mass * x / (block.inertia + block.mass * (x * x + y * y)))
+    assert start[0] == pytest.approx([-spin * y, spin * x, spin], rel=1e-5, abs=FINE[engine])
+
+
+@pytest.mark.parametrize("engine", FINE)
+def test_a_block_on_nothing_falls_freely(engine: str) -> None:
+    standing = on_a_slope(0.0, 1.0, 1.0)
+    loose = box(np.array([3.0, 5.0]), np.array([1.0, 0.0]), 0.5, 1.0)
+    _, start = started(engine, replace(standing, blocks=(*standing.blocks, loose)), 0.5)
+    assert start[1] == pytest.approx([0.0, -1.0, 0.0], abs=1e-9)
+    assert start[0] == pytest.approx([0.0, 0.0, 0.0], abs=FINE[engine])

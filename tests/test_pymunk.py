@@ -17,17 +17,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from arches import ARCHES as OF_ENGINES
-from arches import arch_at, box, least, on_a_slope
+from arches import arch_at, least
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Simulation, get_engine, least_motion, observe, observed_mode, onset
 
 from blocksim import (
     Arch,
-    Assembly,
     CircularArch,
     Mode,
-    Problem,
     Verdict,
     simulate,
 )
@@ -133,54 +131,6 @@ def test_size_and_material_change_no_bit(
     one = simulate(CircularArch.of(arch, friction=0.6), method="pymunk", duration=1.0)
     two = simulate(CircularArch.of(other, friction=0.6), method="pymunk", duration=1.0)
     assert one.state_hash == two.state_hash
-
-
-def accelerations(assembly: Assembly, mu: float) -> np.ndarray:
-    engine = get_engine("pymunk")
-    world = engine.build(Problem(assembly=assembly, mu=mu), engine.rule(assembly))
-    for _ in range(3):
-        found = world.hold(3000)
-    return found
-
-
-def test_a_block_on_nothing_falls_freely() -> None:
-    standing = on_a_slope(0.0, 1.0, 1.0)
-    loose = box(np.array([3.0, 5.0]), np.array([1.0, 0.0]), 0.5, 1.0)
-    both = replace(standing, blocks=(*standing.blocks, loose))
-    found = accelerations(both, 0.5)
-    assert found[1] == pytest.approx([0.0, -1.0, 0.0], abs=1e-13)
-    assert found[0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
-
-
-@settings(max_examples=30)
-@given(st.floats(2, 50), st.floats(0.05, 0.95), st.floats(0.3, 3.0))
-def test_a_block_slides_on_a_slope(degrees: float, share: float, width: float) -> None:
-    """Closed form: g (sin phi - mu cos phi), downhill, without turning."""
-    angle = math.radians(degrees)
-    mu = math.tan(angle) * share
-    height = 0.6 * width / max(math.tan(angle), 1.0)
-    downhill = -np.array([math.cos(angle), math.sin(angle)])
-    expected = (math.sin(angle) - mu * math.cos(angle)) * downhill
-    found = accelerations(on_a_slope(angle, width, height), mu)[0]
-    assert found[:2] == pytest.approx(expected, abs=1e-6)
-    assert found[2] == pytest.approx(0, abs=1e-6)
-
-
-@settings(max_examples=20)
-@given(st.floats(10, 40), st.floats(1.05, 3.0))
-def test_a_slender_block_tips(degrees: float, slenderness: float) -> None:
-    """Closed form: moment of the weight about the lower corner over the inertia there."""
-    angle = math.radians(degrees)
-    width = 1.0
-    height = slenderness * width / math.tan(angle)
-    assembly = on_a_slope(angle, width, height)
-    block = assembly.blocks[0]
-    x, y = block.centre  # the lower corner is at the origin
-    about_corner = block.inertia + block.mass * (x * x + y * y)
-    spin = -block.mass * x / about_corner
-    found = accelerations(assembly, 50.0)[0]
-    assert found[2] == pytest.approx(spin, rel=1e-5, abs=1e-6)
-    assert found[:2] == pytest.approx([-spin * y, spin * x], rel=1e-5, abs=1e-6)
 
 
 def test_blocks_at_rest_are_put_back() -> None:
