@@ -15,7 +15,6 @@ from hypothesis import strategies as st
 from worlds import hold
 
 from blocksim import CircularArch, Mode, Problem, Verdict, bracket
-from blocksim.arch import limit, theory
 from blocksim.arch.circular import ETA_MAX
 from blocksim.ask.search import Answer, Bisection
 from blocksim.simulation.observation import Held
@@ -142,29 +141,6 @@ def test_nothing_beyond_the_range_is_asked(
     assert max(asked) <= ceiling
     assert verdict is Verdict.STANDS or max(asked) == ceiling
     assert verdict is Verdict.COLLAPSES or min(asked) == floor
-
-
-@pytest.mark.parametrize("weight", ["centreline", "sector"])
-@pytest.mark.parametrize(
-    ("degrees", "mu"), [(90, 0.7), (125, 0.9), (145, 1.6), (148, 1.8), (90, 0.35)]
-)
-def test_static_methods(degrees: float, mu: float, weight: str) -> None:
-    alpha = math.radians(degrees)
-    arch = CircularArch(half_angle=alpha, friction=mu, voussoirs=30, weight=weight)
-    exact = theory.least_thickness(alpha, mu, weight)
-    built = limit.least_thickness(alpha, mu, 30, weight)
-    theirs, ours = (bracket(arch, method=method) for method in ("theory", "limit"))
-    by_theory, by_limit = theirs.arch, ours.arch
-    assert by_theory.eta_low == by_theory.eta_high == exact.eta
-    assert by_limit.eta_low == by_limit.eta_high == built.eta
-    assert (by_theory.mode, by_limit.mode) == (exact.mode, built.mode)
-    assert bracket(arch).method == "limit"
-    for found in (by_theory, by_limit):
-        assert (found.eta_theory, found.eta_limit) == (exact.eta, built.eta)
-        assert found.thrust == pytest.approx(exact.thrust, abs=0.1)
-    for found in (theirs, ours):
-        assert found.confirmed is None
-        assert found.runs == 0
 
 
 @pytest.mark.parametrize("method", ["theory", "limit", "pymunk"])

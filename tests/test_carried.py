@@ -110,19 +110,6 @@ def test_the_safest_state_uses_its_share_of_the_worst_joints(told: dict[str, Any
     assert len(used) >= 5
 
 
-def test_every_number_has_its_unit() -> None:
-    said = inside(*ASKED).stdout
-    for words in (
-        "kN/m to",
-        "span 8 m",
-        "rise 3 m",
-        "angle 35 deg",
-        "kN/m3",
-        "kN/m up",
-    ):
-        assert words in said
-
-
 def test_thrust_at_a_joint_by_name() -> None:
     """Weights change no horizontal force, so every joint of the arch has the same thrust."""
     portal = ["check", "portal", "--mu", "0.7", "--unit-weight", "20"]

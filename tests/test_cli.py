@@ -40,19 +40,6 @@ def test_check_answers_with_its_exit_code(
     }
 
 
-def test_bracket_holds_the_contract() -> None:
-    done = blocksim("bracket", *ARCH, "--method", "pymunk", "--tol", "0.005", "--json")
-    answer = json.loads(done.stdout)
-    assert done.returncode == 0
-    arch = answer["arch"]
-    assert arch["eta_high"] - arch["eta_low"] <= 0.005 * arch["eta_high"]
-    assert arch["eta_low"] < arch["eta_limit"] < arch["eta_high"]
-    assert arch["mode"] == arch["mode_theory"] == "rrr"
-    assert answer["confirmed"] is True
-    assert answer["undecided"] == 0
-    assert arch["thrust"] is None
-
-
 def test_options_override_the_scenario() -> None:
     done = blocksim("bracket", "semicircle", "--alpha", "125", "--mu", "0.9", "--json")
     answer = json.loads(done.stdout)

@@ -22,10 +22,8 @@ from worlds import (
 
 from analysis.structure_cases import ASIDE, MOST, Question, answered, questions
 from blocksim import Assembly, Joint, JointState, Problem, Verdict, equilibrium, structure_of
-from blocksim.engines.contact import banded, interior, path_following, solver
-from blocksim.engines.contact.cones import Cones
+from blocksim.engines.contact import banded, solver
 from blocksim.engines.contact.geometry import Geometry
-from blocksim.engines.contact.step import Answer, Step
 from tests.certificates import certificate
 
 MOVED = [
@@ -66,10 +64,6 @@ def ends(question: Question) -> list[tuple[Problem, Verdict]]:
         # No friction is the least there is.
         return [inside]
     return [inside, (question.at(value - aside), Verdict.COLLAPSES)]
-
-
-def test_nearly_all_cases_are_asked() -> None:
-    assert len(ASKED) == 101
 
 
 @pytest.mark.parametrize("name", of_each_kind(ASKED))
@@ -316,45 +310,6 @@ def falling_wall(courses: int = 8, length: float = 3) -> Problem:
     return wall.tilted(math.radians(1.3 * 29.725116))
 
 
-def test_contacts_that_are_told_are_found_no_better_on_a_path(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    # Its forces are known to 1e-9 and no better; a path of 900 systems once ended there, too.
-    def path_from_apart(*_: object) -> None:
-        raise AssertionError("a path is followed")
-
-    monkeypatch.setattr(solver, "path_from_apart", path_from_apart)
-    onset = observe(falling_wall(), "direct", moving=False).onset
-    assert onset.verdict is Verdict.COLLAPSES
-
-
-def test_a_path_from_a_guess_is_short(monkeypatch: pytest.MonkeyPatch) -> None:
-    # From all apart it takes 873 systems. Where blocks slide there may be several answers; what
-    # is found has to be one.
-    systems: list[int] = []
-
-    def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Any, Any, int]:
-        if dilates:
-            return interior.central_path(step, cones, dilates=True)
-        return np.zeros_like(step.free), np.zeros_like(cones.offset), 0
-
-    def path_from_guess(step: Step, guess: Answer, *most: int) -> Answer | None:
-        end = path_following.path_from_guess(step, guess, *most)
-        systems.append(end.systems if end else 0)
-        return end
-
-    monkeypatch.setattr(solver, "central_path", central_path)
-    monkeypatch.setattr(solver, "path_from_guess", path_from_guess)
-    monkeypatch.setattr(solver, "path_from_apart", lambda *_: pytest.fail("from all apart"))
-    world = world_of(falling_wall(), 1e-3)
-    assert np.abs(world.hold(1)).max() > 0.1
-    assert (world.quality().residual or 0.0) < 1e-8
-    # The first path begins at the guess that is none here, and leads nowhere.
-    assert len(systems) == 2
-    assert systems[0] == 0
-    assert 50 < systems[1] < 300
-
-
 @pytest.mark.parametrize("mu", [20.0, math.inf])
 def test_rest_is_found_though_what_contacts_do_is_not(
     mu: float, monkeypatch: pytest.MonkeyPatch
@@ -422,17 +377,6 @@ def test_corners_open_and_slide_and_are_no_length() -> None:
     cos, sin = math.cos(angle), math.sin(angle)
     turned = np.array([[*(np.array([[cos, -sin], [sin, cos]]) @ arm), angle]])
     assert [each.state for each in classify(assembly, turned)] == [closed, opened]
-
-
-def test_a_corner_without_faces_finds_the_one_it_lies_on() -> None:
-    """By hand, in either order, against the polygons."""
-    assembly = ladder(60).assembly
-    for given in (assembly, exchanged(assembly)):
-        bare = replace(given, joints=tuple(replace(j, faces=None) for j in given.joints))
-        first = [joint.before < 0 for joint in given.joints]
-        assert (bare.joint_arrays.carrier == 0).tolist() == first
-        found, known = bare.joint_arrays.faces, given.joint_arrays.faces
-        assert found == pytest.approx(known, abs=1e-12)
 
 
 def test_the_study_says_what_a_wrong_answer_is() -> None:

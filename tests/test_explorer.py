@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 from pathlib import Path
 
@@ -11,12 +10,10 @@ import numpy as np
 import pytest
 from running import inside as blocksim
 
-from blocksim import InputError, Mode
-from blocksim.arch.theory import least_thicknesses
+from blocksim import InputError
 from blocksim.arch.theory.map import at_points
 from blocksim.view.explorer import explorer_page, read_results
-from blocksim.view.mapshapes import LARGEST_MU, iso_line, map_shapes
-from blocksim.view.style import MODES
+from blocksim.view.mapshapes import LARGEST_MU, map_shapes
 
 ROW = {
     "scenario": "semicircle",
@@ -61,12 +58,6 @@ def test_the_page_is_complete_in_itself(page: str) -> None:
     assert explorer_page() == page
 
 
-def test_modes_have_the_colours_of_every_figure(page: str) -> None:
-    modes = embedded(page)["modes"]
-    assert list(modes) == [mode.value for mode in Mode]
-    assert all(modes[mode]["colour"] == style.colour for mode, style in MODES.items())
-
-
 @pytest.mark.parametrize("weight", ["centreline", "sector"])
 def test_shapes_are_the_regions_of_theory(weight: str) -> None:
     """In the middle of each region, between its sampled edges, theory names its mode."""
@@ -87,18 +78,6 @@ def test_regions_cover_the_map_without_overlap(weight: str) -> None:
     assert sum(map(area, shapes.regions)) == pytest.approx(2 * LARGEST_MU, rel=2e-3)
     # The line of first sliding leaves the map at its right edge.
     assert shapes.lines["first"].mu[-1] == pytest.approx(LARGEST_MU, rel=1e-9)
-
-
-def test_iso_lines_are_critical_and_upright_on_the_divide() -> None:
-    line = iso_line(math.radians(125))
-    assert line.mu[0] == line.mu[1]
-    assert line.eta[0] == 2
-    exact = least_thicknesses(math.radians(125), line.mu[2:]).eta
-    np.testing.assert_allclose(line.eta[2:], exact, rtol=1e-12)
-    assert line.eta[1] > exact[0]
-    assert iso_line(math.radians(165)).mu.size == 0
-    # From where eta = 2 will do.
-    assert iso_line(math.radians(159)).eta[0] == pytest.approx(2, abs=5e-3)
 
 
 def test_results_as_validate_writes_them(tmp_path: Path) -> None:
@@ -135,14 +114,6 @@ def test_results_as_validate_writes_them(tmp_path: Path) -> None:
 def test_results_that_are_none_are_refused(row: dict, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="--results"):
         read_results(written(tmp_path, row))
-
-
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"rows": [1]}', '{"rows": 1}', "[" * 5000])
-def test_files_that_are_no_results_are_refused(text: str, tmp_path: Path) -> None:
-    path = tmp_path / "validate.json"
-    path.write_text(text, encoding="utf-8")
-    with pytest.raises(InputError, match="--results"):
-        read_results(path)
 
 
 def test_names_from_elsewhere_are_text_never_markup(tmp_path: Path) -> None:

@@ -449,23 +449,6 @@ def of(kind: str, **more: object) -> dict[str, Any]:
     return {"kind": kind, "friction": 1, **more}
 
 
-@pytest.mark.parametrize(
-    ("kind", "whole"),
-    [
-        ("rubble", {"stones": 12, "seed": 3}),
-        ("wall", {"courses": 2}),
-        ("flat-arch", {"voussoirs": 3}),
-    ],
-)
-def test_a_whole_number_may_be_written_with_a_point(kind: str, whole: dict[str, int]) -> None:
-    pointed_out = structure_of(
-        of(kind, **{name: float(value) for name, value in whole.items()})
-    )
-    plain = structure_of(of(kind, **whole)).assembly.blocks
-    for one, other in zip(pointed_out.assembly.blocks, plain, strict=True):
-        assert np.array_equal(one.vertices, other.vertices)
-
-
 @pytest.mark.parametrize("name", KINDS)
 def test_every_kind_is_asked_by_its_name_alone(name: str) -> None:
     asked = inside("check", name, "--mu", "0.7", "--json")

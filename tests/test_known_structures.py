@@ -215,17 +215,6 @@ def test_what_is_wrong_is_a_miss(
     assert said in row.miss
 
 
-def test_what_is_not_asked_is_said() -> None:
-    chosen = [load_known(name) for name in ("catenary", "spread_90_12_20", "gable")]
-    told = [each.words for each in unasked(chosen)]
-    assert told == [
-        "pymunk: catenary (more than 40 blocks)",
-        "pymunk: spread_90_12_20 (it moves no supports)",
-    ]
-    with pytest.raises(InputError, match="one of direct"):
-        validate(chosen, ("limit",))
-
-
 @pytest.fixture(scope="module")
 def page(rows: list[StructureRow]) -> str:
     # `rows` have no misses: one is made up, and one name is hostile.

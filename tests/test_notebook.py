@@ -216,12 +216,6 @@ def test_a_problem_as_a_dict_is_its_file(shown: dict[str, Any]) -> None:
     assert run["state_hash"] == shown["recording"].state_hash
 
 
-def test_a_verdict_is_its_word(shown: dict[str, Any]) -> None:
-    assert shown["check"].verdict == "collapses"
-    assert blocksim.check(CircularArch.of(ARCH, friction=0.7)).verdict == "stands"
-    assert f"{blocksim.Verdict.UNDECIDED}" == "undecided"
-
-
 def test_reprs_are_short_whatever_they_are_of() -> None:
     third = 1 / 3
     arch = Arch(

@@ -67,12 +67,6 @@ def test_the_sense_and_the_faces_of_a_joint():
     assert upper.faces.tolist() == [[[2, 1], [0, 1]], [[3.5, 1], [0.5, 1]]]
 
 
-def test_a_joint_of_equal_faces_needs_none():
-    assembly = assembly_of_polygons([GROUND, box(0, 0), box(1, 0)], fixed=[0])
-    head = assembly.joints[-1]
-    assert (head.faces, head.normal.tolist()) == (None, [1, 0])
-
-
 def test_a_face_meets_several_blocks_and_two_blocks_meet_twice():
     """A beam on two posts, and a bridge-like block that stands on one base with two feet."""
     assembly = assembly_of_polygons([GROUND, box(0, 0), box(3, 0), box(0, 1, 4)], fixed=[0])

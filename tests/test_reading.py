@@ -6,8 +6,6 @@ import copy
 import json
 import math
 import re
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, cast
@@ -511,8 +509,3 @@ def test_a_large_drawing_is_not_read(tmp_path: Path) -> None:
             file.truncate(20_000_001)
         with pytest.raises(InputError, match="at most 20000000 bytes"):
             load_structure(tmp_path / name, friction=0.7)
-
-
-def test_ezdxf_is_not_loaded_before_it_is_needed() -> None:
-    script = "import sys, blocksim.cli; sys.exit('ezdxf' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0

@@ -18,7 +18,6 @@ from blocksim import Verdict
 from blocksim.report.motion import KEYS, SHOWN, UNIT, joints_of, recorded_drawing
 from blocksim.report.page import report_page, summary
 from blocksim.report.tables import write_results
-from blocksim.studies.agreement import numbered
 
 MAP = (
     b'<?xml version="1.0"?><svg width="9pt" viewBox="0 0 90 60"><style>*{fill:red}</style>'
@@ -120,10 +119,6 @@ def test_page_can_be_read_without_seeing_it(text: str) -> None:
     assert all(target in ids for target in targets)
     levels = [int(tag[1]) for tag, _ in page.elements if re.fullmatch("h[1-6]", tag)]
     assert all(later - earlier <= 1 for earlier, later in pairwise(levels))
-
-
-def test_engines_share_the_number_of_an_arch() -> None:
-    assert list(numbered(rows()).values()) == [1, 2]
 
 
 @pytest.mark.parametrize(

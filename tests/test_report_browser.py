@@ -129,13 +129,6 @@ def test_a_structure_moves_and_can_be_seen(page, windows: Windows) -> None:
     assert windows.wrong("file:") == []
 
 
-def test_it_is_light_on_paper(page) -> None:
-    page.emulate_media(media="print", color_scheme="dark")
-    look = "getComputedStyle(document.body).backgroundColor"
-    assert page.evaluate(look) == "rgb(255, 255, 255)"
-    assert not page.locator(".controls").first.is_visible()
-
-
 def test_no_column_is_clipped(page) -> None:
     tables = page.locator(".wide:has(table)").all()
     assert len(tables) == 2  # of arches, and of structures
@@ -211,13 +204,6 @@ def test_names_of_modes_can_be_read(page) -> None:
             assert (sum(ground) / 765 > 0.5) is (scheme == "light")
             tones = ["#" + bytes(colour).hex() for colour in (ink, ground)]
             assert contrast(*tones) > 4.5
-
-
-def test_names_are_written_as_they_are(page) -> None:
-    items = page.locator("#disagreements li")
-    assert items.count() > 1
-    for item in items.all():
-        assert item.inner_text().startswith(("semicircle", "second<script>", "fig17"))
 
 
 def test_points_of_the_map_lead_to_their_rows(page, windows: Windows) -> None:

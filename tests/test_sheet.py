@@ -20,15 +20,13 @@ from running import inside
 from blocksim import (
     Arch,
     CircularArch,
-    InputError,
     Problem,
     check,
     load_structure,
     structure_of,
 )
-from blocksim.kinds.offers import carried_of
 from blocksim.view.drawing import save_figure
-from blocksim.view.sheet import Sheet, answer_sheet, sheet_of
+from blocksim.view.sheet import Sheet, answer_sheet
 from blocksim.view.sheetdxf import LAYERS, write_dxf
 from blocksim.view.sheetfigure import sheet_figure
 from blocksim.view.thrustlines import is_chained
@@ -307,13 +305,6 @@ def test_lines_meet_in_the_pier_between_two_arches() -> None:
     assert not is_chained(CASES["wall"]())
 
 
-def test_what_leans_has_no_statics_in_the_plane() -> None:
-    problem = CASES["portal"]().leaning(0.1)
-    assert carried_of(problem) is None
-    figure = sheet_figure(sheet_of(problem))
-    assert legend(figure) == {"support"}
-
-
 def test_units_are_those_of_the_weights() -> None:
     assert force_unit(CASES["portal"]()).name == "kN/m"
     unit = force_unit(CASES["wall"]())
@@ -421,19 +412,6 @@ def test_dxf_has_true_dimensions(tmp_path: Path) -> None:
         "span 8.000 m (intrados)", "rise 3.000 m (intrados)", "thickness 0.450 m",
         "\N{GREEK SMALL LETTER ALPHA} = 73.74°"
     }  # fmt: skip
-
-
-def test_bodies_that_have_no_outline_are_refused(tmp_path: Path) -> None:
-    apart = [[[0, 0], [1, 0], [1, 1], [0, 1]], [[2, 0], [3, 0], [3, 1], [2, 1]]]
-    problem = structure_of({
-        "friction": 0.5,
-        "blocks": [
-            {"id": "g", "vertices": [[-1, -1], [4, -1], [4, 0], [-1, 0]], "fixed": True},
-            {"id": "pair", "polygons": apart},
-        ],
-    })  # fmt: skip
-    with pytest.raises(InputError, match="pair"):
-        read(sheet_of(problem), tmp_path)
 
 
 ASKED = ("--span", "8", "--rise", "3", "--thickness", "0.45", "--friction-angle", "35")

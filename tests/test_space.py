@@ -253,15 +253,6 @@ def test_blocks_touch_at_faces_edges_and_corners() -> None:
         assert joint.normal @ np.array([0, 0, 1]) == pytest.approx(1)
 
 
-def test_a_plank_across_another_touches_it_in_a_point() -> None:
-    """Two prisms on their edges, crosswise."""
-    low = [[x, y, z] for x in (-1, 1) for y, z in ((0, 1), (-1, 0), (1, 0))]
-    high = [[x, y, z] for y in (-1, 1) for x, z in ((0, 1), (-1, 2), (1, 2))]
-    solids = [Solid(parts=(low,), fixed=True), Solid(parts=(high,))]
-    (joint,) = problem_of(solids).assembly.joints
-    assert np.allclose(joint.points, [[0, 0, 1]])
-
-
 def test_parts_of_a_block_move_as_one() -> None:
     """An L of two boxes: its centroid, and that it stands where one box alone would fall."""
     arm, leg = box((-0.2, 0, 1), (1.4, 1, 1.2)), box((-0.2, 0, 0), (0.2, 1, 1))

@@ -18,7 +18,6 @@ from shapely import Polygon, box
 from structure_cases import names, scenes
 
 from blocksim import (
-    Arch,
     CircularArch,
     JointState,
     Problem,
@@ -258,23 +257,6 @@ def test_a_mechanism_is_drawn_as_its_blocks_move() -> None:
         "support", "hinge", "mechanism, enlarged",
         "live load at factor 1 (not on it), largest 1 N",
     }  # fmt: skip
-
-
-def test_an_arch_keeps_its_words_and_stands_on_strips() -> None:
-    """Supports that are not known are drawn behind the springings."""
-    arch = Arch(half_angle=1.2, eta=0.2, voussoirs=7)
-    problem = CircularArch.of(arch, 0.7).problem()
-    states = [JointState.CLOSED] * 8
-    states[3] = JointState.HINGE_EXTRADOS
-    figure = problem_figure(problem, joint_states=states)
-    assert legend(figure) == {"support", "hinge extrados"}
-    supports = of(figure, "support")
-    assert len(supports) == 2
-    for support in supports.values():
-        strip = np.asarray(support.get_path().vertices)
-        angle = np.abs(np.arctan2(strip[:, 0], strip[:, 1]))
-        assert angle.min() > 1.2 - 0.02
-        assert angle.max() > 1.2 + 0.05
 
 
 def test_parts_of_a_block_are_one_body_without_seams() -> None:

@@ -237,16 +237,6 @@ def test_titles_say_what_it_is_and_nothing_of_arches() -> None:
     assert sum(word.startswith("long long") and word.endswith("…") for word in long) == 2
 
 
-def test_lengths_are_in_metres_and_times_in_seconds_even_where_the_size_is_1() -> None:
-    problem = structure_of(scenes("block_slides")[0])
-    assert problem.assembly.size == 1
-    film = Film([recording(problem, np.zeros((2, 1, 3)))])
-    words = drawn_words(film)
-    assert f"t = {math.sqrt(1 / 9.81):.3f} s" in words
-    assert "0.5 m" in words
-    assert next(word for word in words if "direct" in word).startswith("at rest   direct")
-
-
 def test_hinges_at_either_end_are_one_thing() -> None:
     """The drums of a column turn to and fro: one word, one colour."""
     problem = structure_of(scenes("column_six_drums")[0])

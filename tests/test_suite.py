@@ -243,12 +243,6 @@ def test_own_methods_say_the_same_through_files(tmp_path: Path) -> None:
             assert line["verdict"] == adapter["SAYS"][usual]
 
 
-def test_names_say_nothing_of_answers() -> None:
-    first = [next(family.questions).stands for family in families()]
-    assert 0.25 < np.mean(first) < 0.75
-    assert sum(each.stands for each in STANDING.values()) * 2 == len(STANDING)
-
-
 def test_what_slides_keeps_its_energy_but_for_friction() -> None:
     scene, poses = MOVING["slides-down-2"].scene, MOVING["slides-down-2"].poses
     way, seconds = poses[-1, 0, 0] - poses[0, 0, 0], scene.times[-1]

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from running import inside as blocksim
-from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
+from sweeps import GRID, SIMULATED, design_of, rows_of, written
 
 from blocksim import (
     Arch,
@@ -29,7 +29,7 @@ from blocksim import (
 )  # fmt: skip
 from blocksim import sweep as public_sweep
 from blocksim.common import later
-from blocksim.sweeps import Case, answers, read_rows, run, write_csv, write_parquet
+from blocksim.sweeps import Case, answers, read_rows, write_csv, write_parquet
 from blocksim.sweeps import table as tables
 from blocksim.sweeps.answers import Answered, Asked, answer
 from blocksim.sweeps.shards import identities
@@ -49,16 +49,6 @@ CASE = Case(
 PYMUNK = DIRECT.replace("direct", "pymunk")
 
 
-def test_a_grid_takes_every_combination(tmp_path: Path) -> None:
-    design = design_of(tmp_path, GRID)
-    cases = list(design.cases())
-    assert len(cases) == design.size == 4 * 3 * 2 * 2 * 2 * 2
-    assert len(set(cases)) == len(cases)
-    given = [dict(case.given) for case in cases]
-    assert {each["half_angle_deg"] for each in given} == {60.0, 90.0, 120.0, 150.0}
-    assert {each["mu"] for each in given} == {0.5, 0.9, math.inf}
-
-
 def test_a_random_design_is_the_same_again_and_can_grow(tmp_path: Path) -> None:
     few = list(design_of(tmp_path, SIMULATED).cases())
     assert few == list(design_of(tmp_path, SIMULATED).cases())
@@ -75,17 +65,6 @@ def test_a_random_design_is_the_same_again_and_can_grow(tmp_path: Path) -> None:
     # Log-uniform: half of the draws lie below the geometric mean.
     below = sum(each["mu"] < math.sqrt(0.8) for each in given) / len(more)
     assert abs(below - 0.5) < 0.036
-
-
-def test_an_identity_is_what_is_asked_and_by_what_version() -> None:
-    case = CASE
-    same = Case(*case)
-    assert case.identity("1") == same.identity("1")
-    assert case.identity("1") != case.identity("2")
-    other = dict(case.given) | {"mu": 0.70001}
-    ratio = tuple(("ratio" if name == "eta" else name, value) for name, value in case.given)
-    others = [case._replace(given=tuple(other.items())), case._replace(given=ratio)]
-    assert len({each.identity("1") for each in (case, *others)}) == 3
 
 
 @pytest.mark.usefixtures("in_this_process")
@@ -243,19 +222,6 @@ def test_rows_of_earlier_versions_go_into_the_same_table(tmp_path: Path) -> None
     assert sum(row["pier_width_m"] != "" for row in held.values()) == 24
 
 
-def test_a_bracket_may_do_without_moving_runs(tmp_path: Path) -> None:
-    text = (
-        'half_angle_deg = 90\nmu = 0.7\nvoussoirs = 9\nmethod = ["limit", "direct"]\nconfirm = '
-    )
-    for confirm in ("true", "false"):
-        with ThreadPoolExecutor(1) as executor:
-            sweep(design_of(tmp_path, text + confirm), tmp_path, executor=executor)
-    rows = rows_of(tmp_path).values()
-    assert [row["confirmed"] for row in rows if row["asked"] == "limit"] == [None]
-    assert {row["confirmed"] for row in rows if row["asked"] == "direct"} == {True, None}
-    assert {row["mode"] for row in rows if row["asked"] == "direct"} == {"rrr"}
-
-
 def test_a_failing_case_becomes_a_row_that_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -332,15 +298,6 @@ def test_an_executor_that_breaks_is_not_ours_to_replace(tmp_path: Path) -> None:
         )
     with ThreadPoolExecutor(1) as executor:
         assert sweep(design, tmp_path, executor=executor).cases == 192
-
-
-def test_chunks_change_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, uninterrupted: Rows
-) -> None:
-    monkeypatch.setattr(run, "LARGEST_CHUNK", 7)
-    with ThreadPoolExecutor(1) as executor:
-        sweep(design_of(tmp_path, SIMULATED), tmp_path, executor=executor, in_flight=1)
-    assert rows_of(tmp_path) == uninterrupted
 
 
 def test_what_occurs_twice_is_asked_once_and_a_larger_design_reuses_rows(
@@ -486,26 +443,6 @@ def test_a_kind_in_space_is_one_like_any_other(tmp_path: Path) -> None:
         kept = text.replace('method = ["limit", "direct"]\n', "")
         with pytest.raises(InputError, match=said):
             design_of(tmp_path, kept + wrong)
-
-
-def test_a_date_is_no_load(tmp_path: Path) -> None:
-    with ThreadPoolExecutor(1) as executor:
-        text = 'kind = "column"\nmu = 0.7\nmethod = "limit"\ndead = 2026-11-23'
-        sweep(design_of(tmp_path, text), tmp_path, executor=executor)
-    [row] = read_rows(tmp_path)
-    assert "dead = '2026-11-23': must be" in str(row["error"])
-
-
-def test_a_table_of_one_question_about_a_kind(tmp_path: Path) -> None:
-    """Without any whole number in it."""
-    parquet = pytest.importorskip("pyarrow.parquet")
-    with ThreadPoolExecutor(1) as executor:
-        alone = 'kind = "portal"\nmu = 0.7\nmethod = "limit"'
-        sweep(design_of(tmp_path, alone), tmp_path, executor=executor)
-    write_parquet(tmp_path, tmp_path / "rows.parquet")
-    [held] = parquet.read_table(tmp_path / "rows.parquet").to_pylist()
-    [row] = read_rows(tmp_path)
-    assert held == {key: value for key, value in row.items() if key != "parameters"}
 
 
 @pytest.mark.usefixtures("in_this_process")

@@ -228,11 +228,6 @@ def test_gravity_is_an_option_and_is_told(tmp_path: Path) -> None:
         assert inside("check", str(path), "--gravity", wrong).returncode == 2
 
 
-def test_nothing_touches_anything() -> None:
-    for method in ("limit", "direct", "pymunk"):
-        assert check(block(3.0), method=method).verdict is Verdict.COLLAPSES
-
-
 @pytest.mark.parametrize("method", ["direct", "pymunk", "pybullet", "mujoco"])
 def test_what_cannot_bounce_in_space_is_refused_in_a_line(method: str) -> None:
     wanted = {"direct": "0 in space", "pymunk": "no blocks in space"}.get(method, "restitution")
@@ -240,15 +235,6 @@ def test_what_cannot_bounce_in_space_is_refused_in_a_line(method: str) -> None:
                   "--set", "restitution=0.5", "--out", "none.npz")  # fmt: skip
     assert (said.returncode, said.stderr.count("\n")) == (2, 1)
     assert wanted in said.stderr
-
-
-def test_gravity_in_space_is_told_and_in_a_file_is_the_same() -> None:
-    said = json.loads(
-        inside("check", "tower", "--mu", "0.7", "--gravity", "3.71", "--json").stdout
-    )
-    assert said["problem"]["gravity_m_s2"] == pytest.approx([0, 0, -3.71])
-    on_file = block().to_dict() | {"dead": [{"body": [0, -3.71 / G]}]}
-    assert np.allclose(structure_of(on_file).gravity, block().under(3.71).gravity, atol=1e-15)
 
 
 def test_pybullet_refuses_heaps_whose_short_joints_take_it_minutes() -> None:

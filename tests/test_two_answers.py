@@ -249,14 +249,6 @@ def test_a_block_in_a_wedge_must_rest(mu: float) -> None:
     assert may_start(between_walls(0.3, mu)).moves is False
 
 
-def test_linear_programmes_are_solved_before_and_after() -> None:
-    # HiGHS keeps the number of threads it was first asked for, and refuses another.
-    wedged = between_walls(0.3, 0.5)
-    assert equilibrium(wedged).exists
-    assert may_start(wedged).moves is False
-    assert equilibrium(wedged).exists
-
-
 # In every run test_two_answers has the end of such a band: that of a keystone.
 @pytest.mark.long
 def test_a_wide_arch_of_seven_may_move_up_to_a_third_above_its_least_thickness() -> None:
@@ -351,13 +343,6 @@ def test_two_groups_are_asked_by_themselves() -> None:
     start = may_start(problem)
     assert start.accelerations == pytest.approx(np.array([[0, -1, 0], [0, 0, 0]]), abs=1e-6)
     assert may_start(beside(between_walls(0.3, 0.5), 1e4)).moves is False
-
-
-def test_below_the_least_thickness_it_moves() -> None:
-    problem = arch(3.0, 0.98)
-    start = may_start(problem)
-    assert start.moves
-    assert wrong(problem, start) < 1e-6
 
 
 def test_check_says_which_of_the_three() -> None:

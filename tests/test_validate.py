@@ -15,14 +15,11 @@ import numpy as np
 import pytest
 from report_rows import ARCH, ROW, sliding
 from running import inside as blocksim
-from worlds import get_engine
 
-import blocksim as package
 from blocksim import CircularArch, InputError, Mode, Verdict, load_recording, load_structure
-from blocksim.cli.studies import validation_lines, validation_table
+from blocksim.cli.studies import validation_lines
 from blocksim.common.files import json_text
 from blocksim.kinds.scenarios import load_scenario, shipped
-from blocksim.report.answerwords import signed
 from blocksim.report.tables import write_results
 from blocksim.studies.agreement import disagreements
 from blocksim.studies.validate import scenarios, unasked, validate, validate_one
@@ -148,24 +145,6 @@ def test_infinite_friction_may_be_a_text_in_files(tmp_path: Path) -> None:
     path.write_text("alpha_deg = 90\nmu = 1\n")
     with pytest.raises(InputError, match="alpha_deg = 90: must be named half_angle_deg"):
         load_design(path)
-
-
-def test_what_rounds_to_nothing_has_no_sign() -> None:
-    assert [signed(x, 3) for x in (-4e-7, 4e-7, -0.0012)] == ["0.000", "0.000", "-0.001"]
-    row = replace(ROW, error=-1e-9)
-    assert "-0.000" not in str([*validation_table([row]).columns[-1].cells])
-
-
-def test_direct_is_of_blocksims_version() -> None:
-    assert get_engine("direct").version == package.__version__
-    assert f"blocksim {package.__version__}\n" == blocksim("--version").stdout
-
-
-def test_nothing_asked_is_help() -> None:
-    done = blocksim()
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "scenarios" in done.stdout
-    assert blocksim("-h").stdout.split() == blocksim("--help").stdout.split()
 
 
 @pytest.mark.parametrize(

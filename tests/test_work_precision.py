@@ -21,7 +21,7 @@ from blocksim.report import chart
 from blocksim.report.chart import read_points, write_chart, write_points
 from blocksim.simulation.motion import QUIET
 from blocksim.studies import refinement
-from blocksim.studies.chart import ChartArch, Point, front, measure, on_front
+from blocksim.studies.chart import ChartArch, Point, front, measure
 from blocksim.studies.refinement import REFINEMENTS, let_go, look
 
 SMALL = ChartArch(name="small: 90 deg", half_angle=math.pi / 2, mu=0.7, voussoirs=9)
@@ -71,12 +71,6 @@ def test_the_front_is_what_nothing_beats() -> None:
     assert front(POINTS) == [POINTS[0], POINTS[2], POINTS[3]]
     # What took longest has least work.
     assert front(POINTS, "work") == [POINTS[3]]
-
-
-def test_what_is_held_against_theory_has_a_front_of_its_own() -> None:
-    counted = point("limit", 1e-1, 20.0, knob="voussoirs")
-    assert counted not in front([*POINTS, counted])
-    assert on_front([*POINTS, counted]) == {*front(POINTS), counted}
 
 
 def fewer(monkeypatch: pytest.MonkeyPatch, knob: str, **values: tuple[float, ...]) -> None:
