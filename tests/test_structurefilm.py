@@ -12,7 +12,7 @@ from recorded import drawn_words, recorded
 from structure_cases import scenes
 
 from blocksim import JointState, Problem, Recording, structure_of
-from blocksim.view.canvas import stone_tones
+from blocksim.view.canvas import colour, stone_tones
 from blocksim.view.film import Film
 from blocksim.view.planar import PlanarView
 from blocksim.view.stage import BESIDE, Stage
@@ -99,27 +99,20 @@ def test_joints_are_on_parts_of_faces() -> None:
     stage = Stage(lifted(problem))
     size = problem.assembly.size
     moment = stage.at(0.0)
-    for joint, pair, marks in zip(
-        problem.assembly.joints, moment.faces, stage.joint_sides, strict=True
-    ):
+    joints = problem.assembly.joints
+    for joint, pair in zip(joints, moment.faces, strict=True):
         for ends in pair:
             np.testing.assert_allclose(
                 ends[:, :2] * size, [joint.inner, joint.outer], atol=1e-9
             )
-        for mark in marks:
-            if mark is not None:
-                side = moment.corners[mark.polygon, 0][
-                    [mark.side, (mark.side + 1) % stage.sides], :2
-                ]
-                long = float(np.hypot(*(side[1] - side[0]))) * size
-                assert (mark.stop - mark.start) * long == pytest.approx(joint.length)
-    shares = sorted(
-        (mark.stop - mark.start)
-        for marks in stage.joint_sides
-        for mark in marks
-        if mark is not None
-    )
-    assert shares == pytest.approx([0.5, 1.0, 1.0, 1.0])
+    sliding = [JointState.SLIDES] * len(joints)
+    pieces = stage.solids(1.0).at(moment.turns, moment.places, sliding)
+    tone = colour(JOINTS[JointState.SLIDES])
+    marks = [line.points for piece in pieces for line in piece.lines if line.tone == tone]
+    # In front and behind, of both blocks of a joint; supports have none.
+    long = sorted(np.hypot(*(b - a)[:2]) * size for a, b in marks if a[2] == b[2])
+    blocks = [joint for joint in joints for side in (joint.before, joint.after) if side >= 0]
+    assert long == pytest.approx(sorted(2 * [joint.length for joint in blocks]))
 
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])

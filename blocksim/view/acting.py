@@ -12,10 +12,11 @@ from blocksim.arch.circular import GRAVITY
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.shaking import Shaking
+from blocksim.blocks.space.extruded import UP
 from blocksim.view.arrows import forces_of
 from blocksim.view.canvas import Label, Panel, Shape, arrow, colour, width_of
 from blocksim.view.following import View
-from blocksim.view.solidscene import UPRIGHT
+from blocksim.view.placing import UPRIGHT
 from blocksim.view.solidstage import SolidStage
 from blocksim.view.stage import Stage
 from blocksim.view.style import DEAD, INK, LIVE, QUIET
@@ -103,7 +104,7 @@ class Acting:
         stage, found = self._stage, list[float]()
         moves = stage.recording.problem.moves
         for block, move in zip(sorted(stage.carriers), moves, strict=True):
-            way = stage.point_at(moment, block, np.zeros(2))[:2]
+            way = stage.point_at(moment, block, np.zeros(3))[:2]
             way = way - stage.recording.poses[0, block, :2]
             long = float(move.direction @ move.direction)
             if long:
@@ -203,7 +204,7 @@ def _pushes(problem: Problem[Any]) -> list[tuple[str, Array]]:
 
 
 def _resultants(problem: Problem[Any]) -> list[tuple[str, int, Array, Array]]:
-    """Collect other loads: kind, block, point from its centre [size], and force."""
+    """Collect other loads: kind, block, point from its centre as built [size], and force."""
     return [
         (kind, block, arm / problem.assembly.size, factor * force)
         for kind, factor, load in _loads(problem)
@@ -219,5 +220,5 @@ def _acting(problem: Problem[Any], load: Load) -> Iterator[tuple[int, Array, Arr
             yield block, UPRIGHT @ force, arm
         return
     for block, (place, force) in zip(load.blocks, forces_of(problem, load), strict=True):
-        arm = np.asarray(place) - problem.assembly.centres[block]
+        arm = UP @ (np.asarray(place) - problem.assembly.centres[block])
         yield block, np.append(force[:2], 0.0), arm

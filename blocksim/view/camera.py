@@ -53,6 +53,23 @@ class Piece(NamedTuple):
     faces: Sequence[Face]
     lines: Sequence[Line] = ()
 
+    def moved(self, turn: Array, place: Array) -> Piece:
+        """Return it turned, (3, 3), about the origin, which goes to a place."""
+        return Piece(
+            self.corners @ turn.T + place,
+            [
+                each._replace(corners=each.corners @ turn.T + place, normal=turn @ each.normal)
+                for each in self.faces
+            ],
+            [
+                each._replace(
+                    points=each.points @ turn.T + place,
+                    normals=[turn @ normal for normal in each.normals],
+                )
+                for each in self.lines
+            ],
+        )
+
 
 class Camera:
     """An eye in perspective; y is upwards.

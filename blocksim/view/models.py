@@ -16,16 +16,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from blocksim.blocks.assembly import Array, Assembly
-from blocksim.blocks.outlines import following
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.blocks.space.extruded import lifted, prism, prisms
+from blocksim.blocks.space.polyhedron import Polyhedron
 from blocksim.common.words import printable
 from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import colour
 from blocksim.view.gltf import Document, Ring, Solid, mesh_of
-from blocksim.view.placing import centres_at, quaternions
-from blocksim.view.solidscene import UPRIGHT, WAY, Marks, marks_of, moving_box, supports_of
+from blocksim.view.placing import UPRIGHT
+from blocksim.view.solidscene import WAY, Marks, marks_of, moving_box, supports_of
 from blocksim.view.stage import Stage
 from blocksim.view.style import GROUND, PAPER
 
@@ -38,8 +39,6 @@ GOES, FRAMES = 2.0, 24
 """How long a mechanism goes on [s], and frames of that."""
 OFF = 1e-3
 """How far what joints do is painted off their faces [size]."""
-Body = tuple[Solid, Sequence[tuple[Solid, int]]]
-"""A mesh, and others painted on it with their materials."""
 
 
 def write_model(recording: Recording[Any], file: BinaryIO, kind: str) -> None:
@@ -55,12 +54,17 @@ def write_model(recording: Recording[Any], file: BinaryIO, kind: str) -> None:
         "engine": printable(f"{recording.engine} {recording.engine_version}"),
         "state_hash": recording.state_hash,
     }
+    poses, size, assembly = recording.poses[frames], problem.assembly.size, problem.assembly
     if problem.in_space:
-        _put_solids(made, problem.assembly, seconds[frames], recording.poses[frames], {})
+        supports = supports_of(assembly, *moving_box(assembly))
+        _put(made, assembly, size, supports, seconds[frames], poses, {})
     else:
         made.extras["gravity_g"] = problem.gravity.tolist()
         made.extras["gravity_m_s2"] = (problem.gravity * STANDARD_GRAVITY).tolist()
-        _put_prisms(made, recording, seconds, frames)
+        stage = Stage(recording)
+        feet = [prism(each * size, stage.depth * size) for each in stage.footings]
+        _put(made, prisms(assembly), size, feet, seconds[frames], lifted(poses), {})
+        made.solid("ground", _ground(stage, size), made.material("ground", colour(PAPER)))
     made.write(file, kind)
 
 
@@ -75,55 +79,27 @@ def mechanism_model(answer: Check[SpatialAssembly]) -> bytes:
     made = Document(len(assembly.blocks))
     made.extras = {"title": printable(answer.problem.title)}
     marks = marks_of(assembly, [each.state for each in answer.joints])
-    _put_solids(made, assembly, np.linspace(0.0, GOES, FRAMES + 1), poses, marks)
+    times, supports = (
+        np.linspace(0.0, GOES, FRAMES + 1),
+        supports_of(assembly, *moving_box(assembly)),
+    )
+    _put(made, assembly, assembly.size, supports, times, poses, marks)
     return made.glb()
 
 
 def _put(
     made: Document,
-    assembly: Assembly | SpatialAssembly,
-    bodies: Iterable[Body],
-    supports: Iterable[Solid],
+    assembly: SpatialAssembly,
+    size: float,
+    supports: Iterable[Polyhedron],
     seconds: NDArray[Any],
-    places: NDArray[Any],
-    turns: NDArray[Any],
+    poses: Array,
+    marks: Marks,
 ) -> None:
-    """Add blocks that move, by places and quaternions (frames, blocks, ...), and supports."""
-    times = made.add(seconds.astype(np.float32))
-    for at, (block, (solid, painted)) in enumerate(zip(assembly.blocks, bodies, strict=True)):
-        node = made.solid(
-            printable(block.name) or f"block {at}", solid, made.stones[at % len(made.stones)],
-            painted, translation=places[0, at].tolist(), rotation=turns[0, at].tolist(),
-        )  # fmt: skip
-        made.move(node, times, "translation", places[:, at])
-        made.move(node, times, "rotation", turns[:, at])
-    base = made.material("support", colour(GROUND))
-    for at, solid in enumerate(supports):
-        made.solid(f"support {at}", solid, base)
+    """Add blocks that move, and supports.
 
-
-def _put_prisms(
-    made: Document, recording: Recording, seconds: NDArray[Any], frames: NDArray[np.intp]
-) -> None:
-    """Add blocks of the plane, footings and ground."""
-    assembly, size, stage = recording.assembly, recording.assembly.size, Stage(recording)
-    turns = quaternions(recording)[frames][..., [1, 2, 3, 0]].astype(np.float32)
-    places = np.array([centres_at(recording, int(at)) for at in frames]) * size
-    bodies = (
-        (_prisms([part - block.centre for part in block.polygons], block.depth), ())
-        for block in assembly.blocks
-    )
-    feet = (_prisms([footing * size], stage.depth * size) for footing in stage.footings)
-    places = places.astype(np.float32)
-    _put(made, assembly, bodies, feet, seconds[frames], places, turns)
-    made.solid("ground", _ground(stage, size), made.material("ground", colour(PAPER)))
-    made.animation["name"] = printable(recording.engine)
-
-
-def _put_solids(
-    made: Document, assembly: SpatialAssembly, seconds: NDArray[Any], poses: Array, marks: Marks
-) -> None:
-    """Add blocks in space, and supports."""
+    `size`: Unit of the centres of poses, (frames, blocks, 6) [m].
+    """
     told = sorted({tone for each in marks.values() for *_, tone in each})
     looks = {tone: made.material(f"joint {tone}", colour(tone)) for tone in told}
     vectors = poses[..., 3:].reshape(-1, 3)
@@ -132,23 +108,30 @@ def _put_solids(
     # q and -q are one rotation: each is the one nearer to that before.
     alike = (turns[1:] * turns[:-1]).sum(axis=-1) >= 0
     turns[1:] *= np.cumprod(np.where(alike, 1.0, -1.0), axis=0)[..., None]
-    bodies: list[Body] = []
+    places = poses[..., :3] * size @ UPRIGHT.T
+    times = made.add(seconds.astype(np.float32))
     for at, block in enumerate(assembly.blocks):
-        faces = [
-            (f.corners - block.centre, f.normal) for each in block.hulls for f in each.faces
-        ]
         painted: list[tuple[Solid, int]] = []
         for points, normal, tone in marks.get(at, []):
-            off = points - block.centre + OFF * assembly.size * normal
-            painted.append((_upright([(off, normal)], edged=False), looks[tone]))
-        bodies.append((_upright(faces), painted))
-    supports = (
-        _upright([(face.corners, face.normal) for face in piece.faces])
-        for piece in supports_of(assembly, *moving_box(assembly))
-    )
-    places = poses[..., :3] * assembly.size @ UPRIGHT.T
-    _put(made, assembly, bodies, supports, seconds, places, turns)
+            if len(points) > 2:
+                off = points - block.centre + OFF * size * normal
+                painted.append((_upright([(off, normal)], edged=False), looks[tone]))
+        node = made.solid(
+            printable(block.name) or f"block {at}", _body(block.hulls, block.centre),
+            made.stones[at % len(made.stones)], painted,
+            translation=places[0, at].tolist(), rotation=turns[0, at].tolist(),
+        )  # fmt: skip
+        made.move(node, times, "translation", places[:, at])
+        made.move(node, times, "rotation", turns[:, at])
+    base = made.material("support", colour(GROUND))
+    for at, piece in enumerate(supports):
+        made.solid(f"support {at}", _body((piece,), np.zeros(3)), base)
     made.animation["name"] = "motion"
+
+
+def _body(hulls: Sequence[Polyhedron], about: Array) -> Solid:
+    """Make a mesh of parts of a block, as seen from a point of it."""
+    return _upright([(f.corners - about, f.normal) for hull in hulls for f in hull.faces])
 
 
 def _upright(faces: Sequence[Ring], *, edged: bool = True) -> Solid:
@@ -168,32 +151,6 @@ def _around(points: Array, normal: Array) -> Array:
     one = arms[0] / np.linalg.norm(arms[0])
     other = np.cross(normal, one)
     return points[np.argsort(np.arctan2(arms @ other, arms @ one))]
-
-
-def _prisms(pieces: list[Array], depth: float) -> Solid:
-    """Return prisms of convex outlines about z = 0, without the faces between two of them."""
-    faces: list[Ring] = []
-    edges: list[Array] = []
-    sides = {
-        (*start, *end)
-        for piece in pieces
-        for start, end in zip(piece.tolist(), following(piece).tolist(), strict=True)
-    }
-    for piece in pieces:
-        near = np.pad(piece, ((0, 0), (0, 1)), constant_values=depth / 2)
-        far = near * [1.0, 1.0, -1.0]
-        faces.append((near, np.array([0.0, 0.0, 1.0])))
-        faces.append((far[::-1], np.array([0.0, 0.0, -1.0])))
-        for at in range(len(piece)):
-            to = (at + 1) % len(piece)
-            along = piece[to] - piece[at]
-            inside = (*piece[to].tolist(), *piece[at].tolist()) in sides
-            if inside or not along.any():
-                continue
-            out = np.array([along[1], -along[0], 0.0]) / np.hypot(*along)
-            faces.append((np.array([near[at], far[at], far[to], near[to]]), out))
-            edges += [near[at], near[to], far[at], far[to], near[at], far[at]]
-    return mesh_of(faces, np.array(edges))
 
 
 def _ground(stage: Stage, size: float) -> Solid:

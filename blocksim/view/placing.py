@@ -5,19 +5,54 @@ Lengths are in units of the assembly's size.
 
 from __future__ import annotations
 
-from itertools import pairwise
+from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
-from blocksim.blocks.assembly import SPATIAL, SUPPORT, Array, Joint
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.space.extruded import lifted
 from blocksim.simulation.recording import Recording
-from blocksim.view.drawing import Part
+
+UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+"""From z upwards to y upwards."""
+
+
+class Frames:
+    """Where blocks are at the frames of a recording, in the plane or in space, and between."""
+
+    def __init__(self, recording: Recording[Any]) -> None:
+        self._recording = recording
+
+    def poses(self, earlier: int, later: int, share: float) -> Array:
+        """Return centres x, y, z (upwards) and rotation vectors, (blocks, 6)."""
+        recording = self._recording
+        one, two = (
+            each if recording.problem.in_space else lifted(each)
+            for each in recording.poses[[earlier, later]]
+        )
+        if not share:
+            return one
+        # Turns between frames are even.
+        first = Rotation.from_rotvec(one[:, 3:])
+        way = (Rotation.from_rotvec(two[:, 3:]) * first.inv()).as_rotvec()
+        turned = Rotation.from_rotvec(share * way) * first
+        places = one[:, :3] + share * (two[:, :3] - one[:, :3])
+        return np.hstack([places, turned.as_rotvec()])
+
+    def placed(self, earlier: int, later: int, share: float) -> tuple[Array, Array]:
+        """Return turns since blocks were built, (blocks, 3, 3), and centres, y upwards."""
+        return upright(self.poses(earlier, later, share))
+
+
+def upright(poses: Array) -> tuple[Array, Array]:
+    """Return turns, (blocks, 3, 3), and centres, (blocks, 3), y upwards, of poses."""
+    turns = Rotation.from_rotvec(poses[:, 3:]).as_matrix()
+    return UPRIGHT @ turns @ UPRIGHT.T, poses[:, :3] @ UPRIGHT.T
 
 
 class Placing:
     """Convex pieces of blocks, and joints, carried by the poses of a recording.
-
-    `sides`: Corners that a piece is to have at least.
 
     It has:
     `owner`, (pieces,): The block that each piece belongs to.
@@ -25,7 +60,7 @@ class Placing:
     `outlines`, (pieces, sides, 2): Of the pieces, from the centres of their blocks.
     """
 
-    def __init__(self, recording: Recording, sides: int) -> None:
+    def __init__(self, recording: Recording) -> None:
         self._recording, assembly = recording, recording.assembly
         pieces = [
             (index, (part - block.centre) / assembly.size)
@@ -33,97 +68,33 @@ class Placing:
             for part in block.polygons
         ]
         self.owner = np.array([index for index, _ in pieces])
-        self.sides = max(sides, *(len(each) for _, each in pieces))
-        self.outlines = np.array([padded(each, self.sides) for _, each in pieces])
+        self.sides = max(len(each) for _, each in pieces)
+        self.outlines = np.array(
+            [np.pad(each, ((0, self.sides - len(each)), (0, 0)), "edge") for _, each in pieces]
+        )
         self._half = assembly.depths[self.owner] / 2
-        self._turns = quaternions(recording)
+        self._frames = Frames(recording)
 
     def corners(self, earlier: int, later: int, share: float) -> Array:
         """Corners in space between two frames."""
-        centres, turns = self._placed(earlier, later, share)
+        turns, centres = self._frames.placed(earlier, later, share)
         half = np.broadcast_to(self._half[:, None, None], (*self.outlines.shape[:2], 1))
         near = np.concatenate([self.outlines, half], axis=-1)
         local = np.stack([near, near * [1, 1, -1]], axis=1)
         owner = self.owner
-        return centres[owner][:, None, None] + _turned(turns[owner][:, None, None], local)
+        return centres[owner][:, None, None] + local @ turns[owner][:, None].swapaxes(2, 3)
 
     def faces(self, earlier: int, later: int, share: float) -> Array:
         """Return the ends of joints in space, as the blocks on both sides carry them."""
         assembly = self._recording.assembly
-        centres, turns = self._placed(earlier, later, share)
+        turns, centres = self._frames.placed(earlier, later, share)
         # The support comes last, as index -1 says: it stays.
         centres = np.vstack([centres, np.zeros(3)])
-        turns = np.vstack([turns, [1.0, 0.0, 0.0, 0.0]])
+        turns = np.concatenate([turns, np.eye(3)[None]])
         sides = assembly.sides.T
         local = np.zeros((*sides.shape, 2, 3))
         local[..., :2] = assembly.joint_arms.swapaxes(0, 1)
-        return centres[sides][:, :, None] + _turned(turns[sides][:, :, None], local)
-
-    def side(self, joint: Joint, block: int) -> Part | None:
-        """Find the side of a piece of a block that a joint lies on."""
-        if block == SUPPORT:
-            return None
-        pieces = np.flatnonzero(self.owner == block)
-        size = self._recording.assembly.size
-        corners = self.outlines[pieces] + self._recording.assembly.centres[block] / size
-        along = np.roll(corners, -1, axis=1) - corners
-        square = (along**2).sum(axis=-1)
-        ends = np.array([joint.inner, joint.outer]) / size
-        arm = ends - corners[..., None, :]
-        # Shares of a side at which the ends are nearest to it.
-        share = (arm * along[..., None, :]).sum(axis=-1)
-        share = np.clip(share / np.where(square > 0, square, 1.0)[..., None], 0.0, 1.0)
-        off = np.linalg.norm(arm - share[..., None] * along[..., None, :], axis=-1).sum(axis=-1)
-        off = np.where(square > 0, off, np.inf)
-        piece, side = np.unravel_index(int(np.argmin(off)), off.shape)
-        start, stop = sorted(share[piece, side].tolist())
-        return Part(int(pieces[piece]), int(side), start, stop)
-
-    def _placed(self, earlier: int, later: int, share: float) -> tuple[Array, Array]:
-        """Centres and rotations of the blocks between two frames."""
-        centres = centres_at(self._recording, earlier) * (1 - share)
-        centres += centres_at(self._recording, later) * share
-        turns = self._turns[earlier] * (1 - share) + self._turns[later] * share
-        turns /= np.linalg.norm(turns, axis=-1, keepdims=True)
-        return centres, turns
-
-
-def padded(outline: Array, sides: int) -> Array:
-    """Repeat the last corner of an outline until it has as many as asked for."""
-    return np.pad(outline, ((0, sides - len(outline)), (0, 0)), "edge")
-
-
-def centres_at(recording: Recording, frame: int) -> Array:
-    """Centres of the blocks in space, (blocks, 3)."""
-    poses = recording.poses[frame]
-    centres = np.zeros((len(poses), 3))
-    centres[:, :2] = poses[:, :2]
-    if poses.shape[1] == SPATIAL:
-        centres[:, 2] = poses[:, 3]
-    return centres
-
-
-def quaternions(recording: Recording) -> Array:
-    """Rotations as unit quaternions w, x, y, z that go on smoothly, (frames, blocks, 4)."""
-    poses = recording.poses
-    vectors = np.zeros((*poses.shape[:2], 3))
-    vectors[..., 2] = poses[..., 2]
-    if poses.shape[2] == SPATIAL:
-        vectors[..., :2] = poses[..., 4:]
-    angle = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    # sin(angle/2)/angle, 1/2 where nothing turns.
-    turns = np.concatenate([np.cos(angle / 2), vectors * np.sinc(angle / (2 * np.pi)) / 2], -1)
-    for earlier, later in pairwise(turns):
-        # q and -q are one rotation: take the one nearer to the frame before.
-        later[(earlier * later).sum(axis=-1) < 0] *= -1
-    return turns
-
-
-def _turned(turns: Array, points: Array) -> Array:
-    """Rotate points by unit quaternions."""
-    axis = turns[..., 1:]
-    across = 2 * np.cross(axis, points)
-    return points + turns[..., :1] * across + np.cross(axis, across)
+        return centres[sides][:, :, None] + local @ turns[sides].swapaxes(2, 3)
 
 
 def depth_of(points: Array, outline: Array) -> Array:

@@ -9,8 +9,9 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.view.canvas import Label, Panel, Shape, colour, edge_width, mixed, stone_tones
 from blocksim.view.drawing import HINGES, along_side, words_of
-from blocksim.view.stage import Moment, Stage
+from blocksim.view.stage import Stage
 from blocksim.view.style import DASHES, GROUND, INK, PAPER, STONE, THRUST
+from blocksim.view.timeline import Moment
 
 MARGIN = 0.06
 """Free share of a panel on each side."""
@@ -62,7 +63,8 @@ class PlanarView:
         """Draw a moment."""
         edge = mixed(colour(STONE), colour(INK), 0.75)
         # What has turned out of the plane shows its sides, too; the nearest comes last.
-        order = np.argsort(moment.corners[..., 2].max(axis=(1, 2)), kind="stable").tolist()
+        heights = moment.corners[..., 2].max(axis=(1, 2)).round(9)
+        order = np.argsort(heights, kind="stable").tolist()
         owner, outer = self._stage.owner, self._stage.outer
         blocks: list[Shape] = []
         for piece in order:

@@ -13,7 +13,8 @@ from blocksim.limit.space import SpatialEquilibrium
 from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import Canvas, Label, Panel, Shape, colour
 from blocksim.view.captions import legend_of, title
-from blocksim.view.solidscene import UPRIGHT, WAY, force_lines, told
+from blocksim.view.placing import UPRIGHT
+from blocksim.view.solidscene import WAY, force_lines, told
 from blocksim.view.solidstage import SolidStage
 from blocksim.view.spatial import SpatialView
 from blocksim.view.style import QUIET, THRUST

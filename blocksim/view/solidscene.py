@@ -14,86 +14,139 @@ from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.blocks.space.parting import parted
 from blocksim.blocks.space.polyhedron import Polyhedron, frame
 from blocksim.limit.space.statics import state_of
-from blocksim.view.camera import Face, Piece
+from blocksim.view.camera import Face, Line, Piece
 from blocksim.view.canvas import Colour, colour, mixed, stone_tones
 from blocksim.view.drawing import state_of_any, words_of
+from blocksim.view.placing import UPRIGHT
 from blocksim.view.style import GROUND, INK, PAPER
 from blocksim.view.timeline import SEEN
 
-UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-"""From z upwards to y upwards."""
 BED = 0.25
 """How far supports are drawn beyond what moves, in units of the size."""
 WAY = 0.15
 """How far a mechanism is drawn: its largest way in units of the size."""
-Marks = Mapping[int, Sequence[tuple[Array, Array, str]]]
-"""What is painted on the faces of blocks: corners, normal out of the block, colour."""
+Marked = Sequence[tuple[Array, Array, str]]
+"""What is painted on faces: corners, or ends; normal out of the block, colour."""
+Marks = Mapping[int, Marked]
+"""The same by block."""
 GONE = 0.1
 """Opening of all points from which on it is no joint any more [size]."""
 LONGEST = 0.25
 """Length of the largest force [size]."""
+NEAR, ALONG = 1e-3, 0.99
+"""How far off a face what lies on it may be, over the thickness of the part; and the least
+cosine between a joint and the face it is on."""
+SEAM, RIM = 0.6, 2.2
+"""Width of a line that closes the seam between parts of a block [pixels], and of that around a
+joint, over the width of edges."""
 FAINT = 1e-6
 """Share of the largest force below which there is none."""
 
 
 class Solids:
-    """Pieces of blocks in space where they have gone, supports first [size], edges [pixels]."""
+    """Pieces of blocks where they have gone, supports first [size]; edges so wide [pixels].
+
+    `size`: Length in units of which they are [m].
+    `is_arch`: Whether hinges are told by the side on which they are.
+    """
 
     def __init__(
-        self, assembly: SpatialAssembly, supports: Sequence[Polyhedron], line: float
+        self,
+        assembly: SpatialAssembly,
+        supports: Sequence[Polyhedron],
+        line: float,
+        size: float,
+        *,
+        is_arch: bool,
     ) -> None:
-        self._assembly, self._line = assembly, line
-        self._tones = stone_tones(len(assembly.blocks))
+        self._assembly, self._line, self._size, self._is_arch = assembly, line, size, is_arch
+        tones = stone_tones(len(assembly.blocks))
         tone = mixed(colour(GROUND), colour(PAPER), 0.25)
-        self._supports = [
-            self._piece(each, np.eye(3), np.zeros(3), np.zeros(3), tone) for each in supports
-        ]
-
-    def at(self, turns: Array, shifts: Array, joints: Sequence[JointState]) -> list[Piece]:
-        """Return pieces of blocks turned, (blocks, 3, 3), and shifted, (blocks, 3) [m]."""
-        marks: Marks = marks_of(self._assembly, joints)
-        return self._supports + [
-            self._piece(
-                hull, turns[at], shifts[at], block.centre, self._tones[at], marks.get(at, ())
-            )
-            for at, block in enumerate(self._assembly.blocks)
+        self._supports = [self._piece((each,), each, np.zeros(3), tone) for each in supports]
+        self._blocks = [
+            (at, hull, self._piece(block.hulls, hull, block.centre, tones[at]))
+            for at, block in enumerate(assembly.blocks)
             for hull in block.hulls
         ]
 
+    def at(self, turns: Array, places: Array, joints: Sequence[JointState]) -> list[Piece]:
+        """Return pieces of blocks by turns, (blocks, 3, 3), and centres, (blocks, 3)."""
+        marks: Marks = marks_of(self._assembly, joints, is_arch=self._is_arch)
+        found = list(self._supports)
+        for at, hull, piece in self._blocks:
+            own = [each for each in marks.get(at, ()) if hull is self._nearest(at, *each[:2])]
+            found.append(self._marked(piece, hull, own, at).moved(turns[at], places[at]))
+        return found
+
+    def _put(self, points: Array, about: Array) -> Array:
+        return (points - about) / self._size @ UPRIGHT.T
+
     def _piece(
-        self, hull: Polyhedron, turn: Array, shift: Array, about: Array, tone: Colour,
-        marks: Sequence[tuple[Array, Array, str]] = (),
-    ) -> Piece:  # fmt: skip
-        def put(points: Array) -> Array:
-            return placed(points, turn, shift, about) / self._assembly.size @ UPRIGHT.T
+        self, hulls: Sequence[Polyhedron], hull: Polyhedron, about: Array, tone: Colour
+    ) -> Piece:
+        """Return a part of a block; parts of one block have no edge between them."""
+        edge, line = mixed(tone, colour(INK), 0.72), self._line
+        others = [each for each in hulls if each is not hull]
 
-        edge, way = mixed(tone, colour(INK), 0.72), UPRIGHT @ turn
-        shown = [(each.corners, each.normal, tone, edge) for each in hull.faces]
-        # What joints do is painted on the faces they are on.
-        shown += [
-            (points, normal, colour(mark), colour(mark))
-            for points, normal, mark in marks
-            if _lies_on(points, normal, hull)
+        def is_inside(points: Array) -> bool:
+            return any(_lies_in(points, each) for each in others)
+
+        faces: list[Face] = []
+        for each in hull.faces:
+            corners, normal = self._put(each.corners, about), UPRIGHT @ each.normal
+            rim, wide = (tone, SEAM) if others else (edge, line)
+            wide = 0.0 if is_inside(each.corners) else wide
+            faces.append(Face(corners, normal, tone, rim, wide))
+        lines = [
+            self._line_on(hull, ends, about, edge, line)
+            for ends in (hull.edges if others else ())
+            if not is_inside(ends)
         ]
-        faces = [
-            Face(put(each), way @ n, fill, rim, self._line) for each, n, fill, rim in shown
-        ]
-        return Piece(put(hull.corners), faces)
+        return Piece(self._put(hull.corners, about), faces, lines)
+
+    def _line_on(
+        self, hull: Polyhedron, ends: Array, about: Array, tone: Colour, wide: float
+    ) -> Line:
+        """Return a line on a part, seen where one of the faces is on which it lies."""
+        normals, offsets = hull.planes
+        on = np.abs(ends @ normals.T - offsets).max(axis=0) < NEAR * hull.thickness
+        return Line(self._put(ends, about), list(normals[on] @ UPRIGHT.T), tone, wide)
+
+    def _nearest(self, at: int, points: Array, normal: Array) -> Polyhedron:
+        """Return the part of a block that has the face on which a joint is."""
+        hulls = self._assembly.blocks[at].hulls
+        if len(hulls) == 1:
+            return hulls[0]
+        return min(hulls, key=lambda hull: _off(points, normal, hull))
+
+    def _marked(self, piece: Piece, hull: Polyhedron, marks: Marked, at: int) -> Piece:
+        """Paint what joints do on the faces they are on, and around it."""
+        about, faces, lines = (
+            self._assembly.blocks[at].centre,
+            list(piece.faces),
+            list(piece.lines),
+        )
+        for points, normal, name in marks:
+            tone, own = colour(name), UPRIGHT @ normal
+            if len(points) > 2:
+                faces.append(Face(self._put(points, about), own, tone, tone, self._line))
+            for ends in np.stack([points, np.roll(points, -1, axis=0)], axis=1):
+                line = self._line_on(hull, ends, about, tone, RIM * self._line)
+                lines.append(line._replace(normals=[*line.normals, own]))
+        return piece._replace(faces=faces, lines=lines)
 
 
-def placed(points: Array, turn: Array, shift: Array, about: Array) -> Array:
-    """Turn points about a point, and shift them."""
-    return (points - about) @ turn.T + about + shift
+def _off(points: Array, normal: Array, hull: Polyhedron) -> float:
+    """How far a joint is off the face of a part that looks as it does."""
+    normals, offsets = hull.planes
+    off = np.abs(points @ normals.T - offsets).max(axis=0)
+    return float(np.where(normals @ normal > ALONG, off, np.inf).min())
 
 
-def corners_of(assembly: SpatialAssembly, turns: Array, shifts: Array) -> Array:
-    """Return the corners of what moves, where it has gone, (k, 3) [size], y upwards."""
-    found = [
-        placed(hull.corners, turn, shift, block.centre)
-        for block, turn, shift in zip(assembly.blocks, turns, shifts, strict=True)
-        for hull in block.hulls
-    ]
-    return np.concatenate(found) / assembly.size @ UPRIGHT.T
+def _lies_in(points: Array, hull: Polyhedron) -> bool:
+    """Tell whether points are all in a part, or on its rim."""
+    normals, offsets = hull.planes
+    return bool((points @ normals.T <= offsets + NEAR * hull.thickness).all())
 
 
 def moving_box(assembly: SpatialAssembly) -> Array:
@@ -108,15 +161,6 @@ def supports_of(assembly: SpatialAssembly, low: Array, high: Array) -> list[Poly
     hulls = [hull for each in assembly.supports for hull in each.hulls]
     found = [_cut(hull, low - bed, high + bed) for hull in hulls]
     return [each for each in found if each is not None]
-
-
-def _lies_on(points: Array, normal: Array, hull: Polyhedron) -> bool:
-    """Tell whether a joint lies on a face of a part."""
-    near = 1e-3 * hull.thickness
-    return any(
-        face.normal @ normal > 0.999 and np.abs(points @ face.normal - face.offset).max() < near
-        for face in hull.faces
-    )
 
 
 def _cut(hull: Polyhedron, low: Array, high: Array) -> Polyhedron | None:
@@ -142,13 +186,15 @@ def states_at(assembly: SpatialAssembly, poses: Array) -> tuple[JointState, ...]
     return tuple(found)
 
 
-def marks_of(assembly: SpatialAssembly, states: Sequence[JointState]) -> Marks:
+def marks_of(
+    assembly: SpatialAssembly, states: Sequence[JointState], *, is_arch: bool = False
+) -> Marks:
     """Return joints that take part by block, each with its normal out of it and a colour."""
     told: dict[int, list[tuple[Array, Array, str]]] = {}
     for joint, state in zip(assembly.joints, states, strict=True):
-        if state is JointState.CLOSED or len(joint.points) < 3:
+        if state is JointState.CLOSED or len(joint.points) < 2:
             continue
-        tone = words_of(state, is_arch=False)[1]
+        tone = words_of(state, is_arch=is_arch)[1]
         for side, sign in ((joint.before, 1.0), (joint.after, -1.0)):
             told.setdefault(side, []).append((joint.points, sign * joint.normal, tone))
     return told

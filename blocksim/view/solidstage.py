@@ -5,32 +5,22 @@ Lengths are in units of the size, y upwards.
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.limit.carried import Carried
 from blocksim.simulation.recording import Recording
-from blocksim.view.solidscene import UPRIGHT, corners_of, moving_box, states_at, supports_of
-from blocksim.view.timeline import Timeline
+from blocksim.view.placing import UPRIGHT
+from blocksim.view.solidscene import Solids, moving_box, states_at, supports_of
+from blocksim.view.timeline import Moment, Timeline
 
 FARTHEST = 1.75
 """Blocks are followed from the start up to this far beyond where they were at rest [size]."""
-
-
-class SolidMoment(NamedTuple):
-    """Turns (blocks, 3, 3) and shifts [m, z upwards] at a time; `statics` falls from 1 to 0."""
-
-    time: float
-    turns: Array
-    shifts: Array
-    joints: tuple[JointState, ...]
-    statics: float
 
 
 class SolidStage(Timeline):
@@ -41,6 +31,8 @@ class SolidStage(Timeline):
     the lowest level that anything comes to.
     """
 
+    eye = math.radians(30.0), math.radians(22.0)
+    """Where it is seen from, turned about the vertical and raised: tops have much to show."""
     is_arch = False
     sinks = np.inf
     thrust: tuple[Array, ...] = ()
@@ -49,9 +41,14 @@ class SolidStage(Timeline):
     def __init__(self, recording: Recording[SpatialAssembly], near: float = 1.0) -> None:
         super().__init__(recording)
         self.assembly = recording.assembly
-        # Turns between frames of the recording are even.
-        self._turns = [Rotation.from_rotvec(each[:, 3:]) for each in recording.poses]
-        size = self.assembly.size
+        size, blocks = self.assembly.size, self.assembly.blocks
+        corners = [
+            (at, (hull.corners - block.centre) / size @ UPRIGHT.T)
+            for at, block in enumerate(blocks)
+            for hull in block.hulls
+        ]
+        self._corners = np.concatenate([each for _, each in corners])[:, None]
+        self._owner = np.repeat([at for at, _ in corners], [len(each) for _, each in corners])
         low, high = moving_box(self.assembly) / size
         beyond = near * FARTHEST
         times = recording.times[self.shown].tolist()
@@ -66,6 +63,11 @@ class SolidStage(Timeline):
         self.depth = float(high[1] - low[1])
         self.grain = float(self.assembly.reach.min()) / size
 
+    def solids(self, line: float) -> Solids:
+        """Return its pieces, with edges so wide [pixels]."""
+        size = self.assembly.size
+        return Solids(self.assembly, self.supports, line, size, is_arch=False)
+
     @cached_property
     def end(self) -> float:
         """Time at which the recording ends."""
@@ -75,29 +77,14 @@ class SolidStage(Timeline):
         """Tell what joints are seen to do at poses, (blocks, 6)."""
         return states_at(self.assembly, poses)
 
-    def at(self, time: float) -> SolidMoment:
+    def at(self, time: float) -> Moment:
         """Return where everything is at a time, between frames by even turns."""
-        time = self.between(time)[0]
-        turns, shifts = self._placed(time)
-        built = self.recording.poses[0, :, :3] + shifts / self.assembly.size
-        poses = np.concatenate([built, Rotation.from_matrix(turns).as_rotvec()], axis=1)
-        joints = self.joints_at(poses, time)
-        return SolidMoment(time, turns, shifts, joints, self.statics_at(time))
+        time, earlier, later, share = self.between(time)
+        poses = self._frames.poses(earlier, later, share)
+        return self._moment(time, poses, poses)
 
     def corners_at(self, time: float) -> Array:
         """Return the corners of a moment alone, (k, 3)."""
-        return corners_of(self.assembly, *self._placed(time))
-
-    def point_at(self, moment: SolidMoment, block: int, arm: Array) -> Array:
-        """Where a point of a block is that lies so far from its centre as built [size]."""
-        place = self.assembly.centres[block] + moment.shifts[block]
-        return UPRIGHT @ (place / self.assembly.size + moment.turns[block] @ arm)
-
-    def _placed(self, time: float) -> tuple[Array, Array]:
-        """Return turns of the blocks at a time, and shifts of their centres [m]."""
-        _, earlier, later, share = self.between(time)
-        poses = self.recording.poses[..., :3]
-        one, two = self._turns[earlier], self._turns[later]
-        turns = Rotation.from_rotvec(share * (two * one.inv()).as_rotvec()) * one
-        shift = poses[earlier] + share * (poses[later] - poses[earlier]) - poses[0]
-        return turns.as_matrix(), shift * self.assembly.size
+        turns, places = self._frames.placed(*self.between(time)[1:])
+        corners = self._corners @ turns[self._owner].swapaxes(1, 2)
+        return corners[:, 0] + places[self._owner]

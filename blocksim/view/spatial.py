@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import cast
 
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
@@ -11,16 +10,11 @@ from scipy.spatial import ConvexHull, QhullError
 from blocksim.blocks.assembly import Array
 from blocksim.view.camera import Camera, Face, Piece
 from blocksim.view.canvas import Colour, Label, Panel, Shape, colour, edge_width, mixed
-from blocksim.view.prisms import Prisms
-from blocksim.view.solidscene import Solids
-from blocksim.view.solidstage import SolidMoment, SolidStage
-from blocksim.view.stage import Moment, Stage
+from blocksim.view.solidstage import SolidStage
+from blocksim.view.stage import Stage
 from blocksim.view.style import GROUND, INK, PAPER, THRUST
+from blocksim.view.timeline import Moment
 
-ASIDE, ABOVE = math.radians(-32.0), math.radians(14.0)
-"""Where the eye is for blocks of the plane: turned about the vertical, and raised."""
-ASIDE_IN_SPACE, ABOVE_IN_SPACE = math.radians(30.0), math.radians(22.0)
-"""The same for blocks in space, which have as much to show on top."""
 MARGIN = 0.05
 LIGHT = np.array([-0.42, 0.78, 0.46]) / math.hypot(0.42, 0.78, 0.46)
 """Towards the sun: left, up, forward."""
@@ -44,8 +38,7 @@ class SpatialView:
         middle = np.array([self._aside, (stage.ground + high[1]) / 2, out])
         self._foot = np.array([self._aside, stage.ground, out])
         self._reach = float(np.linalg.norm(shown - middle, axis=1).max())
-        way = (ASIDE, ABOVE) if isinstance(stage, Stage) else (ASIDE_IN_SPACE, ABOVE_IN_SPACE)
-        self._camera = camera = Camera(middle, self._reach, *way)
+        self._camera = camera = Camera(middle, self._reach, *stage.eye)
         flat = camera.seen(shown)
         size = flat.max(axis=0) - flat.min(axis=0)
         free = np.array([panel.width, panel.height]) * (1 - 2 * MARGIN)
@@ -55,11 +48,7 @@ class SpatialView:
         camera.shift -= centre
         far = float(np.linalg.norm(camera.eye - middle))
         self._line = edge_width(camera.scale / far, stage.grain)
-        self._made = (
-            Prisms(stage, self._line)
-            if isinstance(stage, Stage)
-            else Solids(stage.assembly, stage.supports, self._line)
-        )
+        self._solids = stage.solids(self._line)
         self.still = self._ground()
 
     def scale_bar(
@@ -80,19 +69,13 @@ class SpatialView:
         down = place[1] - 20 * size
         return shapes, [Label(place[0], down, words, 13 * size, across="center")]
 
-    def shapes(self, moment: Moment | SolidMoment) -> list[Shape]:
+    def shapes(self, moment: Moment) -> list[Shape]:
         """Draw a moment: shadows, then blocks and footings from back to front."""
-        pieces = self._pieces(moment)
+        pieces = self._solids.at(moment.turns, moment.places, moment.joints)
         drawn = self._shadows(pieces)
         for at in self._camera.order(pieces):
             drawn += self._painted(pieces[at])
         return drawn + self._forces(moment)
-
-    def _pieces(self, moment: Moment | SolidMoment) -> list[Piece]:
-        if isinstance(self._made, Prisms):
-            return self._made.at(cast("Moment", moment))
-        solid = cast("SolidMoment", moment)
-        return self._made.at(solid.turns, solid.shifts, solid.joints)
 
     def _painted(self, piece: Piece) -> list[Shape]:
         """Paint what is seen of a piece."""
@@ -108,7 +91,7 @@ class SpatialView:
             if any(camera.sees(each.points[0], normal) for normal in each.normals)
         ]
 
-    def _forces(self, moment: Moment | SolidMoment) -> list[Shape]:
+    def _forces(self, moment: Moment) -> list[Shape]:
         """Draw the line of thrust on the near face, or forces, while all is at rest."""
         if moment.statics == 0.0:
             return []

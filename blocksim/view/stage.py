@@ -8,25 +8,25 @@ block has left the picture, or when one sinks into what it does not rest on (old
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from blocksim.ask.answer import SOUGHT
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.joints import JointState
+from blocksim.blocks.space.extruded import prism, prisms
 from blocksim.engines.ground import ground_level, piers
 from blocksim.kinds.offers import carried_of
 from blocksim.limit.carried import Carried
 from blocksim.simulation.recording import Recording
 from blocksim.view.drawing import Part, clipped, grain_of, outer_parts
 from blocksim.view.placing import Placing, depth_of
+from blocksim.view.solidscene import Solids
 from blocksim.view.thrustlines import is_chained, near_blocks, thrust_lines
-from blocksim.view.timeline import SeenJoints, Timeline
+from blocksim.view.timeline import Moment, SeenJoints, Timeline
 
-FEWEST = 4
-"""Sides of a footing, and of a block at least."""
 SUNK = 0.02
 """Depth of a corner in the ground or in a footing that passes for touching it [r]."""
 FARTHEST = 1.75
@@ -37,26 +37,10 @@ FOLLOWED = 5.0
 """How far a camera follows blocks that go on and on [widths of what it shows at first]."""
 BESIDE, ABOVE = 0.25, 0.1
 """How far beyond the blocks supports are shown, sidewards and upwards [r]."""
+WIDER = 1.12
+"""Depth of the footings over that of the blocks."""
 DIGITS = 9
 """Of a line of thrust [size]."""
-
-
-class Moment(NamedTuple):
-    """Where everything is at one time.
-
-    `corners`, (pieces, 2, sides, 3): Of the near and the far face of each convex piece of a
-        block: x, y, and z towards the viewer.
-    `faces`, (joints, 2, 2, 3): Both ends of each joint as the blocks before and after it have
-        carried them.
-    `statics`: 1 while the line of thrust of the arch at rest still says something, falling to
-        0.
-    """
-
-    time: float
-    corners: Array
-    faces: Array
-    joints: tuple[JointState, ...]
-    statics: float
 
 
 class Stage(Timeline):
@@ -66,6 +50,9 @@ class Stage(Timeline):
     knows convex outlines of footings, cut off far from the blocks, the level of the ground,
     which block owns each piece, the distance from block to block (`grain`), and their middle.
     """
+
+    eye = math.radians(-32.0), math.radians(14.0)
+    """Where it is seen from in perspective: turned about the vertical, and raised."""
 
     def __init__(self, recording: Recording, near: float = 1.0) -> None:
         super().__init__(recording)
@@ -84,10 +71,15 @@ class Stage(Timeline):
             tops = [part[:, 1].max() for each in self._fixed for part in each.polygons]
             self.ground, self._fixed = float(max(tops)) / size, ()
         self.footings, self._bearing = self._standing()
-        corners = max([FEWEST, *(len(each) for each in self.footings)])
-        self._placing = Placing(recording, corners)
+        self._placing = Placing(recording)
         self.owner, self.sides = self._placing.owner, self._placing.sides
         self.grain = grain_of(self.assembly) / size
+
+    def solids(self, line: float) -> Solids:
+        """Return its pieces as prisms, with edges so wide [pixels]."""
+        size = self.assembly.size
+        feet = [prism(each * size, WIDER * self.depth * size) for each in self.footings]
+        return Solids(prisms(self.assembly), feet, line, size, is_arch=self.is_arch)
 
     def _standing(self) -> tuple[tuple[Array, ...], list[int]]:
         """Footings, and for each the block that has nothing to reach in it, or `SUPPORT`."""
@@ -190,14 +182,6 @@ class Stage(Timeline):
         return np.concatenate([rest, bounded])
 
     @cached_property
-    def joint_sides(self) -> tuple[tuple[Part | None, Part | None], ...]:
-        """Where the joints are on the pieces before and after them; None for the support."""
-        return tuple(
-            (self._placing.side(j, j.before), self._placing.side(j, j.after))
-            for j in self.assembly.joints
-        )
-
-    @cached_property
     def outer(self) -> dict[int, list[Part]]:
         """Parts of sides that are seen, by piece, of blocks that have several."""
         found: dict[int, list[Part]] = {}
@@ -219,26 +203,15 @@ class Stage(Timeline):
         """Return where everything is at a time, between frames by interpolation."""
         time, earlier, later, share = self.between(time)
         one, two = self.recording.poses[earlier], self.recording.poses[later]
-        return Moment(
-            time=time,
+        poses = self._frames.poses(earlier, later, share)
+        return self._moment(time, poses, one + (two - one) * share)._replace(
             corners=self._placing.corners(earlier, later, share),
             faces=self._placing.faces(earlier, later, share),
-            joints=self.joints_at(one + (two - one) * share, time),
-            statics=self.statics_at(time),
         )
 
     def corners_at(self, time: float) -> Array:
         """Return the corners of a moment alone, which cost little."""
         return self._placing.corners(*self.between(time)[1:])
-
-    def point_at(self, moment: Moment, block: int, arm: Array) -> Array:
-        """Where a point is that is so far from its block's centre as built, (3,) [size]."""
-        piece = int(np.flatnonzero(self.owner == block)[0])
-        outline, now = self._placing.outlines[piece], moment.corners[piece].mean(axis=0)
-        # Its corners tell how the block has been carried.
-        plain = np.column_stack([outline, np.ones(len(outline))])
-        way: Array = np.linalg.pinv(plain) @ now
-        return np.append(arm, 1.0) @ way
 
     def joints_at(self, poses: Array, time: float) -> tuple[JointState, ...]:
         """Tell what joints are seen to do at poses, (blocks, 3 or 6), and their time."""

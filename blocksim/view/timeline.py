@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, classify
 from blocksim.simulation.motion import AT_REST, FRAME, UNMOVED, UNSEEN
 from blocksim.simulation.recording import Recording
-from blocksim.view.placing import Placing, distance_of
+from blocksim.view.placing import UPRIGHT, Frames, Placing, distance_of, upright
 
 SAMPLES = 500
 """Most frames that are looked at for what a film needs to know beforehand."""
@@ -29,11 +29,46 @@ SEEN = 4e-3
 """Turn or slip of a joint from which on it is coloured [r]: a pixel of a film."""
 
 
+NOWHERE = np.empty(0)
+
+
+class Moment(NamedTuple):
+    """Where everything is at one time, y upwards, z towards the viewer.
+
+    `turns`, `places`, (blocks, 3, 3) and (blocks, 3): Turns of blocks since they were built,
+        and their centres.
+    `statics`: 1 while the line of thrust of the arch at rest still says something, falling to
+        0.
+    `corners`, (pieces, 2, sides, 3): In the plane, of the near and the far face of each convex
+        piece of a block.
+    `faces`, (joints, 2, 2, 3): In the plane, both ends of each joint as the blocks before and
+        after it have carried them.
+    """
+
+    time: float
+    turns: Array
+    places: Array
+    joints: tuple[JointState, ...]
+    statics: float
+    corners: Array = NOWHERE
+    faces: Array = NOWHERE
+
+
 class Timeline(ABC):
     """Times of a recording, and what is known of them."""
 
     def __init__(self, recording: Recording[Any]) -> None:
         self.recording = recording
+        self._frames = Frames(recording)
+
+    def _moment(self, time: float, poses: Array, looked: Array) -> Moment:
+        """Return what there is of blocks at poses, of which joints are looked at by others."""
+        joints = self.joints_at(looked, time)
+        return Moment(time, *upright(poses), joints, self.statics_at(time))
+
+    def point_at(self, moment: Moment, block: int, arm: Array) -> Array:
+        """Where a point of a block is that lies so far from its centre as built [size]."""
+        return moment.places[block] + moment.turns[block] @ UPRIGHT @ arm
 
     @cached_property
     @abstractmethod

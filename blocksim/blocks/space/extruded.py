@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from blocksim.blocks.acting import Load
-from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
+from blocksim.blocks.assembly import PLANAR, SPATIAL, SUPPORT, Array, Assembly, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.space.assembly import FaceJoint, SolidBlock, SpatialAssembly
 from blocksim.blocks.space.polyhedron import Polyhedron
@@ -37,7 +37,7 @@ def extruded(problem: Problem) -> Problem[SpatialAssembly]:
     assembly = problem.assembly
     x, y, out = problem.gravity.tolist()
     return Problem(
-        assembly=_prisms(assembly),
+        assembly=prisms(assembly),
         mu=problem.mu,
         # Out of the plane is towards who looks at it: against y.
         gravity=np.array([x, -out, y]),
@@ -53,12 +53,13 @@ def extruded(problem: Problem) -> Problem[SpatialAssembly]:
     )
 
 
-def _prisms(assembly: Assembly) -> SpatialAssembly:
+def prisms(assembly: Assembly) -> SpatialAssembly:
+    """Return blocks of the plane as prisms, with their joints and supports."""
     deep = max(block.depth for block in assembly.blocks)
     return SpatialAssembly(
         blocks=tuple(
             SolidBlock(
-                hulls=tuple(_prism(part, block.depth) for part in block.polygons),
+                hulls=tuple(prism(part, block.depth) for part in block.polygons),
                 name=block.name or str(at),
                 weight=block.mass * STANDARD_GRAVITY,
                 centre=UP @ block.centre,
@@ -67,7 +68,7 @@ def _prisms(assembly: Assembly) -> SpatialAssembly:
         ),
         supports=tuple(
             SolidBlock(
-                hulls=tuple(_prism(part, deep) for part in support.polygons),
+                hulls=tuple(prism(part, deep) for part in support.polygons),
                 name=support.name or f"support {at}",
                 weight=0.0,
                 centre=np.zeros(3),
@@ -78,8 +79,21 @@ def _prisms(assembly: Assembly) -> SpatialAssembly:
     )
 
 
-def _prism(polygon: Array, depth: float) -> Polyhedron:
+def prism(polygon: Array, depth: float) -> Polyhedron:
+    """Return a convex polygon as a prism of some depth, halved by the plane."""
     return Polyhedron(np.concatenate([_at(polygon, -depth / 2), _at(polygon, depth / 2)]))
+
+
+def lifted(poses: Array) -> Array:
+    """Return poses of the plane, (..., blocks, 3 or 6), as those of the prisms, (..., 6).
+
+    In units of the size: centres x, y, z, and rotation vectors.
+    """
+    found = np.zeros((*poses.shape[:-1], SPATIAL))
+    found[..., [0, 2, 4]] = poses[..., :PLANAR] * [1.0, 1.0, -1.0]
+    if poses.shape[-1] == SPATIAL:
+        found[..., [1, 3, 5]] = poses[..., PLANAR:] * [-1.0, 1.0, 1.0]
+    return found
 
 
 def _at(points: Array, y: float) -> Array:
