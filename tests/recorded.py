@@ -45,3 +45,23 @@ def drawn_words(film: Any, at: float | None = None) -> list[str]:
     file = io.BytesIO()
     film.still(file, "svg", at)
     return re.findall(r"<!-- (.*?) -->", file.getvalue().decode())
+
+
+def parts_of(data: bytes) -> tuple[dict, bytes]:
+    """Take a .glb apart."""
+    assert data[:4] == b"glTF"
+    version, length = np.frombuffer(data[4:12], "<u4")
+    assert (version, length) == (2, len(data))
+    size = int(np.frombuffer(data[12:16], "<u4")[0])
+    assert data[16:20] == b"JSON"
+    assert data[24 + size : 28 + size] == b"BIN\0"
+    return json.loads(data[20 : 20 + size]), data[28 + size :]
+
+
+def accessor(document: dict, numbers: bytes, index: int) -> np.ndarray:
+    found = document["accessors"][index]
+    start = document["bufferViews"][found["bufferView"]]["byteOffset"]
+    width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[found["type"]]
+    dtype = {5126: "<f4", 5125: "<u4"}[found["componentType"]]
+    values = np.frombuffer(numbers, dtype, found["count"] * width, start)
+    return values.reshape(-1, width).squeeze()

@@ -73,7 +73,7 @@ def test_an_option_given_twice_is_taken_twice_or_refused() -> None:
             assert done.stderr == said
 
 
-def test_options_that_may_be_given_twice_are_taken_twice(tmp_path: Path) -> None:
+def test_options_that_may_be_given_twice_are_taken_twice() -> None:
     # Axles and patches are in test_road, what `bracket --out` writes in test_crossing.
     wall = ("check", "wall", "--mu", "1", "--json")
     sizes = ("--with", "courses=2", "--with", "length=3")
@@ -91,8 +91,6 @@ def test_options_that_may_be_given_twice_are_taken_twice(tmp_path: Path) -> None
         said := blocksim("cite", "--method", "pymunk", "--method", "mujoco").stdout
     )
     assert "MuJoCo" in said
-    both = blocksim("paper", str(tmp_path), "--figure", "1", "--figure", "99")
-    assert "99" in both.stderr
 
 
 QUESTION = ("check", *ARCH, "--eta", "0.12")

@@ -18,13 +18,11 @@ from scipy.optimize import linprog
 from structure_cases import case
 
 from blocksim import (
-    InputError,
     Problem,
     Verdict,
     bracket,
     check,
     equilibrium,
-    load_recording,
     structure_of,
 )
 
@@ -158,17 +156,6 @@ def test_what_slips_may_come_to_rest_again() -> None:
     assert check(thicker, method="direct").verdict is Verdict.STANDS
 
 
-def test_names_of_parameters_are_known() -> None:
-    wall = structure_of({"kind": "wall", "friction": 0.7})
-    with pytest.raises(InputError, match="must be one of load, tilt, lean, mu, spread, push"):
-        bracket(wall, over="thickness")
-    portal = structure_of({"kind": "portal", "friction": 0.7})
-    with pytest.raises(
-        InputError, match=r"lean, mu, spread, push, arch\.thickness, arch\.radius, pier_width"
-    ):
-        bracket(portal, over="thickness")
-
-
 def test_a_kind_on_the_command_line(tmp_path: Path) -> None:
     path = tmp_path / "arch.toml"
     path.write_text('kind = "pointed-arch"\nfriction = "inf"\nvoussoirs = 60\nradius = 1.25\n')
@@ -180,31 +167,6 @@ def test_a_kind_on_the_command_line(tmp_path: Path) -> None:
     assert found["limit"] == pytest.approx(want, rel=1e-7)
     assert found["low"] < found["limit"] < found["high"]
     assert found["confirmed"]
-    path = tmp_path / "arch.json"
-    table = {"kind": "pointed-arch", "friction": "inf", "voussoirs": 12, "radius": 1.25}
-    path.write_text(json.dumps({**table, "thickness": 0.08}))
-    done = blocksim("bracket", str(path), "--method", "direct", "--json")
-    found = json.loads(done.stdout)
-    assert found["confirmed"]
-    assert found["low"] < found["limit"] <= found["high"] * (1 + 1e-6)
-    assert found["high"] / found["low"] - 1 < 0.006
-    done = blocksim("check", str(path), "--json")
-    assert done.returncode == 1
-    answer = json.loads(done.stdout)
-    assert answer["problem"]["title"] == "pointed-arch"
-    assert sum(joint["state"].startswith("hinge") for joint in answer["joints"]) >= 4
-    run, picture = tmp_path / "run.npz", tmp_path / "picture.svg"
-    assert (
-        blocksim("simulate", str(path), "--seconds", "0.1", "--out", str(run)).returncode == 0
-    )
-    assert load_recording(run).problem.maker.radius == 1.25  # type: ignore[union-attr]
-    assert blocksim("render", str(path), "--out", str(picture)).returncode == 0
-    assert "Pointed arch" in picture.read_text(encoding="utf-8")
-    path.write_text(json.dumps({**table, "thickness": 9}))
-    done = blocksim("check", str(path))
-    assert done.returncode == 2
-    assert done.stderr.startswith(f"blocksim: {path}: thickness = 9: must be 1e-06 to ")
-    assert done.stderr.count("\n") == 1
 
 
 def test_a_kind_by_its_name() -> None:

@@ -60,7 +60,6 @@ def told(known: Problem) -> np.ndarray:
 @pytest.mark.parametrize(
     ("version", "unit", "scale"),
     [
-        pytest.param("R2010", 6, 1.0, marks=pytest.mark.long),
         ("R12", 6, 1.0),
         ("R2018", 4, 1000.0),
     ],
@@ -79,7 +78,6 @@ def test_forty_polylines_are_answered_as_the_same_polygons(
         assert one == pytest.approx(other, abs=1e-12)
     assert answers(drawn) == pytest.approx(told, rel=1e-12)
     said = {
-        "R2010": "unit m, by",
         "R12": "of the drawing is m, as asked",
         "R2018": "unit mm, by",
     }
@@ -212,10 +210,6 @@ def test_every_question_takes_a_drawing(tmp_path: Path, command: str) -> None:
     assert done.returncode == 0, done.stderr
     if command == "bracket":
         assert json.loads(done.stdout)["limit"] == pytest.approx(math.degrees(math.atan(0.25)))
-    missing = inside(command, path, *more[command])
-    assert missing.returncode == 2
-    assert missing.stderr.count("\n") == 1
-    assert "--mu" in missing.stderr
 
 
 SHAPES = """
@@ -357,16 +351,10 @@ def test_a_converted_drawing_is_the_same_problem(tmp_path: Path, told: np.ndarra
 
 def test_supports_of_an_assembly_are_named_when_it_is_converted(tmp_path: Path) -> None:
     path = written(tmp_path / "wall.json", compas_of([GROUND, *WALL], []))
-    bare = inside("check", str(path), "--mu", "0.7")
-    assert bare.returncode == 2
-    assert "none fixed" in bare.stderr
     out = str(tmp_path / "held.json")
     done = inside("convert", str(path), "--mu", "0.7", "--fixed", "0", "--out", out)
     assert done.returncode == 0, done.stderr
     assert len(load_structure(out).assembly.supports) == 1
-    wrong = inside("convert", str(path), "--mu", "0.7", "--fixed", "x", "--out", out)
-    assert wrong.returncode == 2
-    assert "--fixed = 'x'" in wrong.stderr
 
 
 SQUARE = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]

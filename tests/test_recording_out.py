@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 from filelock import FileLock
 from PIL import Image
+from recorded import accessor, parts_of
 from running import inside
 from windows import new_page
 
@@ -172,32 +173,12 @@ def test_motion_out_of_the_plane_has_columns_of_its_own(
     assert read == pytest.approx(spatial.poses * [SIZE, SIZE, 1, SIZE, 1, 1], abs=1e-12)
 
 
-def parts_of(data: bytes) -> tuple[dict, bytes]:
-    """Take a .glb apart."""
-    assert data[:4] == b"glTF"
-    version, length = np.frombuffer(data[4:12], "<u4")
-    assert (version, length) == (2, len(data))
-    size = int(np.frombuffer(data[12:16], "<u4")[0])
-    assert data[16:20] == b"JSON"
-    assert data[24 + size : 28 + size] == b"BIN\0"
-    return json.loads(data[20 : 20 + size]), data[28 + size :]
-
-
 def written(recording: Recording, kind: str = "glb") -> bytes:
     with TemporaryDirectory() as folder:
         run, out = Path(folder) / "run.npz", Path(folder) / f"run.{kind}"
         recording.save(run)
         assert inside("render", str(run), "--out", str(out)).returncode == 0
         return out.read_bytes()
-
-
-def accessor(document: dict, numbers: bytes, index: int) -> np.ndarray:
-    found = document["accessors"][index]
-    start = document["bufferViews"][found["bufferView"]]["byteOffset"]
-    width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[found["type"]]
-    dtype = {5126: "<f4", 5125: "<u4"}[found["componentType"]]
-    values = np.frombuffer(numbers, dtype, found["count"] * width, start)
-    return values.reshape(-1, width).squeeze()
 
 
 def test_meshes_are_the_blocks_closed_and_seen_from_outside(fall: Recording) -> None:

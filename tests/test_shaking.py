@@ -22,7 +22,6 @@ from structure_cases import case, scenes
 from sweeps import design_of, rows_of
 
 from blocksim import (
-    InputError,
     Problem,
     Verdict,
     bracket,
@@ -223,9 +222,6 @@ def test_an_amplitude_is_bracketed(method: str, confirm: bool) -> None:
     # A range in which it stands all over, although it starts with 0.5 g.
     less = bracket(problem, over="amplitude", method="pymunk", within=(0.0, 1e-4))
     assert (less.low, less.high) == (1e-4, None)
-    still = structure_of(scenes("pulse_1x4_05")[0])
-    with pytest.raises(InputError, match="the ground is at rest"):
-        bracket(still, over="amplitude")
 
 
 @pytest.mark.usefixtures("in_this_process")
@@ -242,12 +238,6 @@ def test_a_sweep_maps_amplitude_against_duration(tmp_path: Path) -> None:
     turned = {row["amplitude_g"]: float(str(row["largest_rotation_deg"])) for row in rows}
     assert turned[0.2] < 0.1
     assert turned[0.5] > 14.04
-    for line, said in (
-        ('shake = "wobble"', "shake = 'wobble': must be one of constant"),
-        ("", "amplitude_g = 'given': must be left out: no shake"),
-    ):
-        with pytest.raises(InputError, match=said):
-            design_of(tmp_path, text.replace('shake = "constant"', line))
 
 
 def test_an_arch_that_falls_anyway_falls_on_ground_that_shakes() -> None:
@@ -318,19 +308,3 @@ def test_a_folder_keeps_answers_and_processes_share_the_work(tmp_path: Path) -> 
     finer = {"accuracy": 1e-4}
     fragility(problem, records, [0.2], method="direct", folder=tmp_path, settings=finer)
     assert len(list(read_rows(tmp_path))) == 3
-
-
-def test_what_cannot_shake_is_refused_before_anything_is_asked(tmp_path: Path) -> None:
-    block = structure_of(scenes(NAME)[0])
-    with pytest.raises(InputError, match="pybullet"):
-        fragility(block, {"a": pulse(1.0)}, [0.2], method="pybullet", folder=tmp_path)
-    assert not list(tmp_path.iterdir())
-
-
-def test_amplitudes_have_to_grow() -> None:
-    with pytest.raises(InputError, match="growing"):
-        fragility(
-            structure_of(scenes(NAME)[0]),
-            {"a": pulse(1.0)},
-            [0.2, 0.1],
-        )

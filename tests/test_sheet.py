@@ -421,16 +421,6 @@ def test_from_the_command_line(tmp_path: Path) -> None:
     made = tmp_path / "arch.dxf"
     assert inside("render", *ASKED, "--out", str(made)).returncode == 0
     assert len(polygons(ezdxf.readfile(made), "blocks")) == 27
-    for asked, words in (
-        (("semicircle",), "where no thickness is given"),
-        (("semicircle", "--eta", "0.09", "--view", "3d"), "a .dxf is of no motion"),
-        (("semicircle", "--eta", "0.09", "--height", "480"), "has no pixels"),
-    ):
-        out = tmp_path / "none.dxf"
-        found = inside("render", *asked, "--out", str(out))
-        assert found.returncode == 2
-        assert words in found.stderr
-        assert not out.exists()
     falls = tmp_path / "falls.svg"
     assert inside("render", *ASKED, "--tilt", "35", "--out", str(falls)).returncode == 0
     said = falls.read_text(encoding="utf-8")

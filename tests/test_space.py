@@ -445,7 +445,7 @@ def test_a_column_that_leans_falls_where_it_would_turn_over_its_edge(lean: float
 
 
 def test_a_picture_shows_the_verdict_and_what_joints_do(tmp_path: Path) -> None:
-    """In words and colours; a drawing to scale is refused in one line."""
+    """In words and colours."""
     out = tmp_path / "dome.svg"
     asked = f"render dome --mu 0.7 --with thickness=0.03 --out {out}"
     assert inside(*asked.split()).returncode == 0
@@ -453,11 +453,6 @@ def test_a_picture_shows_the_verdict_and_what_joints_do(tmp_path: Path) -> None:
     for words in ("COLLAPSES", "84 blocks, μ = 0.7", "hinge", "as it begins to fall"):
         assert words in drawn or words in "".join(re.findall(r"<!-- (.*?) -->", drawn))
     assert JOINTS[JointState.HINGE_INTRADOS].lower() in drawn.lower()
-    sheet = tmp_path / "dome.dxf"
-    done = inside(*f"render dome --mu 0.7 --out {sheet}".split())
-    assert done.returncode == 2
-    assert len(done.stderr.splitlines()) == 1
-    assert not sheet.exists()
 
 
 def test_a_picture_has_every_block_within_its_frame() -> None:

@@ -16,7 +16,7 @@ from space_cases import GROUND, NAMES, asked, box, case, problem_of
 from worlds import observe
 
 import blocksim
-from blocksim import Dome, InputError, Problem, Solid, Verdict, extruded, structure_of
+from blocksim import Dome, Problem, Solid, Verdict, extruded, structure_of
 from blocksim.engines.direct import USUAL
 from blocksim.engines.solid.stepping import SolidBlocks
 from blocksim.view.film import Film
@@ -231,15 +231,6 @@ def test_the_command_render_films_blocks_in_space(tmp_path: Path) -> None:
     assert "of motion" in done.stdout
     with Image.open(out) as picture:
         assert getattr(picture, "n_frames", 1) > 10
-
-
-def test_what_an_engine_cannot_do_in_space_is_one_line() -> None:
-    """Engines of the plane, settings it has not."""
-    problem = incline(0.1, 0.5)
-    with pytest.raises(InputError, match="knows no blocks in space"):
-        blocksim.check(problem, method="pymunk")
-    with pytest.raises(InputError, match="sweeps"):
-        blocksim.check(problem, method="direct", settings={"sweeps": 3})
 
 
 ENGINES = ("pybullet", "mujoco")

@@ -6,7 +6,6 @@ import base64
 import csv
 import json
 import re
-import struct
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from recorded import accessor, parts_of
 from running import inside
 from scipy.spatial.transform import Rotation
 from windows import wait_until
@@ -113,22 +113,6 @@ def test_forces_are_drawn_where_they_balance_the_weights() -> None:
         assert line.mean(axis=0)[:2] == pytest.approx(borne[:2], abs=1e-6)
 
 
-def parts_of(model: bytes) -> tuple[dict[str, Any], bytes]:
-    magic, version, length = struct.unpack("<III", model[:12])
-    assert (magic, version, length) == (0x46546C67, 2, len(model))
-    size, _ = struct.unpack("<II", model[12:20])
-    return json.loads(model[20 : 20 + size]), model[20 + size + 8 :]
-
-
-def numbers(document: dict[str, Any], data: bytes, at: int) -> np.ndarray:
-    accessor = document["accessors"][at]
-    view = document["bufferViews"][accessor["bufferView"]]
-    wide = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor["type"]]
-    kind = np.float32 if accessor["componentType"] == 5126 else np.uint32
-    whole = np.frombuffer(data, kind, accessor["count"] * wide, view["byteOffset"])
-    return whole.reshape(-1, wide)
-
-
 def test_a_model_moves_blocks_as_the_recording_does(tmp_path: Path) -> None:
     """Corners of each node, carried by its animation, are those of the blocks, y upwards."""
     run = tipping()
@@ -145,10 +129,10 @@ def test_a_model_moves_blocks_as_the_recording_does(tmp_path: Path) -> None:
             for each in channels
             if each["target"]["node"] == at
         }
-        places = numbers(document, data, tracks["translation"]["output"])
-        turns = numbers(document, data, tracks["rotation"]["output"])
+        places = accessor(document, data, tracks["translation"]["output"])
+        turns = accessor(document, data, tracks["rotation"]["output"])
         part = document["meshes"][at]["primitives"][0]
-        corners = numbers(document, data, part["attributes"]["POSITION"])
+        corners = accessor(document, data, part["attributes"]["POSITION"])
         for frame in (0, 5, 10):
             shown = Rotation.from_quat(turns[frame]).apply(corners) + places[frame]
             pose = run.poses[frame, at]
@@ -158,7 +142,7 @@ def test_a_model_moves_blocks_as_the_recording_does(tmp_path: Path) -> None:
             apart = np.abs(shown[:, None] - true).max(axis=-1).min(axis=0)
             assert apart.max() < 1e-5 * assembly.size
         # Triangles look outwards.
-        order = numbers(document, data, part["indices"]).reshape(-1, 3)
+        order = accessor(document, data, part["indices"]).reshape(-1, 3)
         one, two, three = corners[order].swapaxes(0, 1)
         out = np.cross(two - one, three - one)
         assert (np.einsum("ij,ij->i", out, (one + two + three) / 3) > 0).all()
@@ -174,7 +158,7 @@ def test_a_page_holds_the_mechanism_and_asks_for_nothing() -> None:
     assert model == mechanism_model(answer)
     document, data = parts_of(model)
     sampler = document["animations"][0]["samplers"]
-    moves = [numbers(document, data, each["output"]) for each in sampler]
+    moves = [accessor(document, data, each["output"]) for each in sampler]
     assert all(np.abs(each[0] - each[-1]).max() < 1e-6 for each in moves)
     assert max(float(np.ptp(each, axis=0).max()) for each in moves) > 0.01
     looks = {each["name"] for each in document["materials"]}

@@ -21,7 +21,6 @@ from worlds import DIRECT, joint_motion
 from blocksim import (
     CircularArch,
     Column,
-    InputError,
     JointState,
     bracket,
     equilibrium,
@@ -315,18 +314,6 @@ def test_hinges_of_a_segment_migrate() -> None:
     assert hinges == [[0, 10, 20], [1, 10, 19]]
     first, caught, last = (event.value for event in path.events)
     assert first == 0 < caught < last
-
-
-def test_what_cannot_be_asked_is_refused() -> None:
-    wall = structure_of({"kind": "wall", "friction": 0.7})
-    with pytest.raises(InputError, match="what moves has to be said"):
-        bracket(wall, over="spread")
-    arch = structure_of(semicircle(0.15))
-    with pytest.raises(InputError, match="limit or direct: others move no supports"):
-        bracket(arch, over="spread", method="pymunk")
-    move = {"block": "left", "direction": [0, 1]}
-    with pytest.raises(InputError, match="named once in move"):
-        structure_of(semicircle(0.15, move=[move, move]))
 
 
 def test_on_the_command_line(tmp_path: Path) -> None:

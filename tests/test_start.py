@@ -12,8 +12,6 @@ from click.testing import CliRunner
 
 from blocksim.cli import app
 from blocksim.cli.app import COMMANDS
-from blocksim.common.later import Later
-from blocksim.kinds import KINDS
 
 SLOW = {
     "PIL",
@@ -62,15 +60,10 @@ def test_no_command_waits_for_what_it_does_not_need(arguments: str, besides: set
 
 
 def test_an_arch_that_falls_is_told_by_the_solver_alone() -> None:
-    found, _ = loaded(f"check {ARCH} --eta 0.1 --method limit", code=1)
-    assert "highspy" in found
-    assert not found & (SLOW - {"highspy", "scipy"} | {"scipy.optimize", "pymunk"})
-
-
-def test_what_is_printed_is_the_answer_alone() -> None:
-    """HiGHS greets on standard output, by itself, from 1.16 on."""
+    """HiGHS greets on standard output, by itself, from 1.16 on: nothing but the answer is."""
     found, said = loaded(f"check {ARCH} --eta 0.1 --method limit --json", code=1)
     assert "highspy" in found
+    assert not found & (SLOW - {"highspy", "scipy"} | {"scipy.optimize", "pymunk"})
     assert json.loads(said)["verdict"] == "collapses"
 
 
@@ -91,18 +84,3 @@ def test_help_lists_every_command_with_the_first_line_of_its_own_help() -> None:
         own = CliRunner().invoke(app, [name, "--help"]).output
         assert " ".join(own.split("\n\n")[1].split()) == about
         assert f" {name} {about}" in told
-
-
-def test_kinds_have_the_names_by_which_they_are_found() -> None:
-    assert [kind.name for kind in KINDS.values()] == list(KINDS)
-
-
-def test_names_are_known_before_things_are_made() -> None:
-    made: list[str] = []
-    things = Later({name: lambda name=name: made.append(name) or name for name in ("a", "b")})
-    assert list(things) == ["a", "b"]
-    assert "a" in things
-    assert "c" not in things
-    assert not made
-    assert [things["b"], things["b"]] == ["b", "b"]
-    assert made == ["b"]

@@ -12,7 +12,7 @@ from dataclasses import replace
 import pytest
 from rocking import on_pulse
 
-from blocksim import InputError, Problem, Verdict, check, collapse, simulate, structure_of
+from blocksim import Problem, Verdict, check, collapse, simulate, structure_of
 
 MOVES, FAR, SECONDS = 1e-4, 0.1, 3.0
 LONG = pytest.mark.long
@@ -75,12 +75,6 @@ def test_a_fall_that_statics_does_not_ask_for_is_undecided(
 @LONG
 def test_a_pile_that_can_rest_is_not_said_to_fall() -> None:
     assert check(pushed("rubble", 0.98), method="pymunk").verdict is not Verdict.COLLAPSES
-
-
-@pytest.mark.parametrize("engine", OTHERS)
-def test_the_others_refuse_ground_that_shakes_by_name(engine: str) -> None:
-    with pytest.raises(InputError, match=f"{engine} knows no ground that shakes"):
-        check(pushed("column", 0.5), method=engine)
 
 
 def loaded(problem: Problem, force: float) -> Problem:

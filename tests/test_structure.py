@@ -162,13 +162,6 @@ def broken(*path: Any, to: Any = None) -> dict[str, Any]:
 UNIT = [[0, 0], [1, 0], [1, 1], [0, 1]]
 
 
-def test_the_first_of_several_wrong_entries_is_named():
-    table = broken("blocks", 1, "weight", to=-1)
-    table["blocks"][2]["mass"] = 5
-    with pytest.raises(InputError, match=r"blocks\[1\]\.weight = -1"):
-        structure_of(table)
-
-
 def test_more_blocks_than_allowed():
     block = {"id": 0, "vertices": UNIT}
     with pytest.raises(InputError, match="blocks") as raised:

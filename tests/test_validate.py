@@ -16,7 +16,7 @@ import pytest
 from report_rows import ARCH, ROW, sliding
 from running import inside as blocksim
 
-from blocksim import CircularArch, InputError, Mode, Verdict, load_recording, load_structure
+from blocksim import CircularArch, InputError, Mode, Verdict, load_recording
 from blocksim.cli.studies import validation_lines
 from blocksim.common.files import json_text
 from blocksim.kinds.scenarios import load_scenario, shipped
@@ -142,9 +142,6 @@ def test_infinite_friction_may_be_a_text_in_files(tmp_path: Path) -> None:
     assert load_scenario(str(path)).mu == math.inf
     path.write_text('half_angle_deg = 90\nmu = ["inf", 1]\n')
     assert load_design(str(path)).axes["mu"].values == (math.inf, 1.0)
-    path.write_text("alpha_deg = 90\nmu = 1\n")
-    with pytest.raises(InputError, match="alpha_deg = 90: must be named half_angle_deg"):
-        load_design(path)
 
 
 @pytest.mark.parametrize(
@@ -168,8 +165,6 @@ def test_a_name_that_was_nearly_right_is_asked_for(
     assert done.stderr.endswith(f"; did you mean {meant}?\n")
     far = blocksim("check", "zzz")
     assert "did you mean" not in far.stderr
-    with pytest.raises(InputError, match=r"did you mean gable\?"):
-        load_structure("gables")
 
 
 def test_a_ratio_is_of_the_least_as_built_and_depth_is_told() -> None:

@@ -494,7 +494,6 @@ def test_side_by_side_of_short_recordings_says_how_to_see_more(tmp_path: Path) -
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("none.npz",), "recording = 'none.npz': must be an existing .npz file"),
         (("RUN", "--mu", "1"), "--mu = 1.0: must be left out"),
         (("RUN", "--height", "241"), "--height = 241: must be an even number"),
         (("RUN", "--slow", "0"), "--slow = 0.0: must be above 0"),
@@ -502,8 +501,6 @@ def test_side_by_side_of_short_recordings_says_how_to_see_more(tmp_path: Path) -
         (("RUN", "--time", "1"), "--time = 1.0: must be left out of a film"),
         (("RUN", "--time", "-1"), "--time = -1.0: must be 0 or more"),
         (("RUN", "--beside", "none.npz"), "an existing .npz file"),
-        (("--alpha", "90", "--mu", "0.3"), "eta is missing"),
-        (("semicircle", "--method", "limit"), "--method = 'limit'"),
     ],
 )
 def test_wrong_input_is_one_line(

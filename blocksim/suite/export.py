@@ -174,12 +174,13 @@ def chosen(levels: Collection[float] = (), within: Collection[str] = ()) -> Iter
         known = groups()
         allowed = f"one of {', '.join(known)}{perhaps(group, known)}"
         require(group in known, "--group", group, allowed)
-    for each in questions().values():
-        if within and each.group not in within:
-            continue
+
+    def is_asked(each: Question | Motion) -> bool:
         if levels and (isinstance(each, Motion) or each.level not in levels):
-            continue
-        yield each.scene
+            return False
+        return not within or each.group in within
+
+    return (each.scene for each in questions().values() if is_asked(each))
 
 
 def export(folder: AnyPath, scenes: Iterator[Scene]) -> dict[str, int]:
