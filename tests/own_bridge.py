@@ -128,3 +128,36 @@ class Bridge:
             *("--mu", repr(self.mu), "--fill", repr(self.fill)),
             *("--unit-weight", repr(self.heavy), "--fill-unit-weight", repr(self.heavy_fill)),
         ]
+
+
+def thrusts_of_half(
+    joints: list[tuple[Any, Any]], parts: list[tuple[float, float]], mu: float
+) -> tuple[float, float]:
+    """Least and greatest level force at x = 0 of what is its own mirror image, by scipy.
+
+    `joints`: Inner and outer end of each joint of the left half, from the crown to the foot.
+    `parts`: Weight and x of what lies between each joint and the one before it, or the middle.
+    """
+    rows: list[list[float]] = []
+    right: list[float] = []
+    weight = turn = 0.0
+    # Unknown are the force H, to the left on this half, and its moment H y.
+    for ends, (more, x) in zip(joints, parts, strict=True):
+        inner, outer = np.asarray(ends)
+        weight, turn = weight + more, turn + more * x
+        for point, sign in ((inner, -1.0), (outer, 1.0)):
+            rows.append([-sign * point[1], sign])
+            right.append(sign * (turn - weight * point[0]))
+        along = (outer - inner) / np.hypot(*(outer - inner))
+        normal = np.array([along[1], -along[0]])
+        for friction in (along, -along):
+            # What is below pushes back by (H, weight).
+            across = friction - mu * normal
+            rows.append([across[0], 0.0])
+            right.append(-weight * across[1])
+    ends = [
+        linprog([sign, 0.0], A_ub=rows, b_ub=right, bounds=[(0, None), (None, None)])
+        for sign in (1.0, -1.0)
+    ]
+    assert [each.status for each in ends] == [0, 0]
+    return float(ends[0].x[0]), float(ends[1].x[0])

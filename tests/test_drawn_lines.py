@@ -10,12 +10,14 @@ from typing import Any, cast
 import ezdxf
 import numpy as np
 import pytest
+import shapely
 from drawn import GROUND, new_dxf, structure, svg_of, written
 from hypothesis import given
 from hypothesis import strategies as st
+from own_bridge import thrusts_of_half
 from running import inside
 
-from blocksim import InputError, bracket, check, load_structure
+from blocksim import InputError, bracket, load_structure
 from blocksim.reading.asked import Reading
 from blocksim.reading.curves import arc, bezier, ellipse
 from blocksim.reading.loops import loops_of
@@ -25,33 +27,39 @@ RIB = {"layer": "A-Mauerwerk.Rippe"}
 LAYERS = {"blocks": ["a-mauerwerk.rippe"], "supports": ["0-AUFLAGER"]}
 INNER, OUTER, HALF, GAP = 4000.0, 4400.0, 2000.0, 0.5
 """Radii of a pointed arch, half its span, and the gaps between its voussoirs [mm]."""
+FINE = 500
+"""Chords of an arc, of which the area is right to a millionth."""
 
 
 def on(radius: float, angle: float) -> tuple[float, float]:
     return HALF + radius * math.cos(angle), radius * math.sin(angle)
 
 
-def pointed(path: Path, count: int = 7, unit: int = 4) -> float:
-    """Draw one half by lines and arcs, insert it and its mirror image; return its area [m2]."""
+def pointed(path: Path, count: int = 7, unit: int = 4, mortar: float = GAP) -> np.ndarray:
+    """Draw one half by lines and arcs, insert it and its mirror image.
+
+    `mortar`: Between its voussoirs, of parallel faces, and at the crown [mm].
+    Returns: Area and x of the centroid of each voussoir from the crown down, in m.
+    """
     document = cast(Any, ezdxf).new("R2010", units=unit)
     half = document.blocks.new("halbe Rippe")
-    first = math.pi
-    ends = [math.acos((-GAP / 2 - HALF) / radius) for radius in (INNER, OUTER)]
-    area = 0.0
+    rays = np.linspace(math.pi, math.acos(-HALF / INNER), count + 1)
+    found = []
     for k in range(count):
-        last = first + (math.acos(-HALF / INNER) - math.pi) / count
-        low = first - (GAP / 2 / INNER if k else 0.0)
-        high = [last + GAP / 2 / INNER] * 2 if k < count - 1 else ends
-        for radius, angle in zip((INNER, OUTER), high, strict=True):
-            half.add_arc((HALF, 0), radius, math.degrees(angle), math.degrees(low))
-        half.add_line(on(INNER, low), on(OUTER, low))
+        # Half the mortar beside each ray; half a gap above the bed; half the mortar at x = 0.
+        beside = GAP if k == 0 else mortar / 2
+        low = [rays[k] - math.asin(beside / radius) for radius in (INNER, OUTER)]
+        high = [rays[k + 1] + math.asin(mortar / 2 / radius) for radius in (INNER, OUTER)]
+        if k == count - 1:
+            high = [math.acos((-mortar / 2 - HALF) / radius) for radius in (INNER, OUTER)]
+        for radius, start, end in zip((INNER, OUTER), high, low, strict=True):
+            half.add_arc((HALF, 0), radius, math.degrees(start), math.degrees(end))
+        half.add_line(on(INNER, low[0]), on(OUTER, low[1]))
         half.add_line(on(OUTER, high[1]), on(INNER, high[0]))
-        # By Green's theorem: two arcs, and two lines of which one leads to the centre.
-        swept = [radius**2 * (low - angle) for radius, angle in zip((INNER, OUTER), high,
-                                                                      strict=True)]  # fmt: skip
-        (x, y), (to_x, to_y) = on(INNER, high[0]), on(OUTER, high[1])
-        area += (swept[1] - swept[0]) / 2 - ((to_x - HALF) * y - (x - HALF) * to_y) / 2
-        first = last
+        path_of = [on(OUTER, t) for t in np.linspace(low[1], high[1], FINE)]
+        path_of += [on(INNER, t) for t in np.linspace(high[0], low[0], FINE)]
+        outline = shapely.Polygon(np.array(path_of) / 1e3)
+        found.append((outline.area, outline.centroid.x))
     space = document.modelspace()
     space.add_blockref("halbe Rippe", (0, 0), dxfattribs=RIB)
     space.add_blockref("halbe Rippe", (0, 0), dxfattribs={**RIB, "xscale": -1})
@@ -60,24 +68,37 @@ def pointed(path: Path, count: int = 7, unit: int = 4) -> float:
         space.add_lwpolyline(bed, close=True, dxfattribs=BED)
     space.add_text("Rippe", dxfattribs={"layer": "Maße"})
     document.saveas(path)
-    return 2 * area / 1e6
+    return np.array(found[::-1])
 
 
-def test_a_pointed_rib_by_lines_and_arcs_weighs_what_it_does(tmp_path: Path) -> None:
-    """Layers of their own names, mm, gaps of 0.5 mm, mirrored references, text."""
-    area = pointed(tmp_path / "rippe.dxf")
-    problem = load_structure(
-        tmp_path / "rippe.dxf", density=22e3, friction=0.6, tolerance=1e-3, depth=0.3,
-        reading=Reading(layers=LAYERS),
-    )  # fmt: skip
-    assert len(problem.assembly.blocks) == 14
-    assert len(problem.assembly.joints) == 15
-    weight = problem.unit_force * 14
-    assert weight == pytest.approx(22e3 * 0.3 * area, rel=1e-12)
-    assert any("areas are exact" in note for note in problem.notes)
-    assert any("1 TEXT on layer Maße" in note for note in problem.notes)
-    up = [each.force[1] for each in check(problem).carried.reactions]  # type: ignore[union-attr]
-    assert up == pytest.approx([weight / 2] * 2, rel=1e-9)
+@pytest.mark.parametrize("mortar", [GAP, 10.0])
+def test_a_pointed_rib_by_lines_and_arcs_thrusts_as_its_half_does(
+    tmp_path: Path, mortar: float
+) -> None:
+    """Layers of their own names, mm, gaps or mortar, mirrored references, text: one command.
+
+    Weights and both thrusts are those of half the rib, by an own programme.
+    """
+    voussoirs = pointed(tmp_path / "rippe.dxf", mortar=mortar)
+    layers = ("--layer", "blocks=A-Mauerwerk.Rippe", "--layer", "supports=0-Auflager")
+    more = ("--mu", "0.6", "--unit-weight", "22", "--depth", "0.3", "--json")
+    close = ("--tolerance", repr(1.05e-3 * max(mortar, 2 * GAP)))
+    done = inside("check", str(tmp_path / "rippe.dxf"), *layers, *close, *more)
+    told = json.loads(done.stdout)
+    assert (told["problem"]["blocks"], len(told["joints"])) == (14, 15)
+    weights = 22 * 0.3 * voussoirs[:, 0]
+    for each in told["reactions"]:
+        assert each["vertical_kN"] == pytest.approx(weights.sum(), rel=1e-6)
+    assert "areas are exact" in told["reason"]
+    assert "1 TEXT on layer Maße" in told["reason"]
+    # Joints are midway in the mortar: along the rays, and at x = 0.
+    rays = np.linspace(math.pi, math.acos(-HALF / INNER), 8)[::-1]
+    ends = [[np.array(on(radius, ray)) / 1e3 for radius in (INNER, OUTER)] for ray in rays]
+    aside = HALF + mortar / 2
+    ends[0] = [np.array([0.0, math.sqrt(r**2 - aside**2) / 1e3]) for r in (INNER, OUTER)]
+    parts = [(0.0, 0.0), *zip(weights, voussoirs[:, 1], strict=True)]
+    thrusts = thrusts_of_half([(low, high) for low, high in ends], parts, 0.6)
+    assert (told["thrust_min_kN"], told["thrust_max_kN"]) == pytest.approx(thrusts, rel=1e-4)
 
 
 def test_a_rib_without_a_unit_is_asked_for_one(tmp_path: Path) -> None:
@@ -210,7 +231,13 @@ def test_clones_and_arcs_of_inkscape(tmp_path: Path, high: float) -> None:
     assert found["three"].centre == pytest.approx([0.09, -0.15])
     brick = found["one"].mass
     # Half an ellipse of 20 by `high` mm, on bricks of 40 by 20.
-    assert found["cap"].mass / brick == pytest.approx(math.pi * 20 * high / 2 / 800, rel=1e-12)
+    cap = math.pi * 20 * high / 2
+    assert found["cap"].mass / brick == pytest.approx(cap / 800, rel=1e-12)
+    # It tips about the edge of its bed: half its width over the height of its centroid, which
+    # chords of the same area move by some hundredths of a millimetre.
+    centroid = (3200 * 40 + cap * (80 + 4 * high / (3 * math.pi))) / (3200 + cap)
+    found_tilt = math.radians(bracket(problem, over="tilt").limit or 0.0)
+    assert math.tan(found_tilt) == pytest.approx(20 / centroid, rel=5e-5)
 
 
 @given(st.floats(0.01, 5.0), st.sampled_from([-1.0, 1.0]), st.floats(-3, 3), st.floats(0.1, 9))

@@ -189,14 +189,14 @@ def test_names_are_escaped_and_nothing_is_loaded(pages: Path) -> None:
     assert "<script>alert" not in text
     assert "<b>nowhere" not in text
     assert "<i>low" not in text
-    assert "blocksim report" in html.unescape(text)
+    assert "blocksim report" in re.sub(r"<[^>]+>", "", text)
 
 
 def test_a_thickness_that_was_not_given_is_told(tmp_path: Path) -> None:
     out = tmp_path / "semicircle.html"
     assert inside("report", "semicircle", "--out", str(out)).returncode == 1
     text = out.read_text(encoding="utf-8")
-    assert "no thickness was given, so it is 0.99 of the least as built" in text
+    assert "No thickness was given, so it is 0.99 of the least as built" in text
 
 
 PAPER = (182, 273)
@@ -208,8 +208,8 @@ MM = 96 / 25.4
     "name",
     [
         "arch",
-        "pushed",
-        *(pytest.param(each, marks=pytest.mark.long) for each in ("thin", "wall", "road")),
+        "road",
+        *(pytest.param(each, marks=pytest.mark.long) for each in ("thin", "wall", "pushed")),
     ],
 )
 def test_it_fits_the_paper(windows: Windows, pages: Path, name: str) -> None:
@@ -235,7 +235,7 @@ def test_it_fits_the_paper(windows: Windows, pages: Path, name: str) -> None:
     assert not page.locator(".controls").first.is_visible()
     printed = page.pdf(prefer_css_page_size=True, print_background=True)
     assert b"/MediaBox [0 0 594" in printed or b"/MediaBox [0 0 595" in printed
-    assert len(re.findall(rb"/Type /Page\b", printed)) <= (3 if name in {"wall", "road"} else 2)
+    assert len(re.findall(rb"/Type /Page\b", printed)) <= (3 if name == "wall" else 2)
 
 
 @pytest.mark.parametrize("scheme", [pytest.param("light", marks=pytest.mark.long), "dark"])

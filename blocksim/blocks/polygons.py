@@ -284,8 +284,8 @@ def _require_held(found: Sequence[tuple[Touch, object]], bodies: Sequence[Body])
         raise InputError(
             f"block {name_of(bodies, loose)}",
             "held by nothing",
-            "joined to a fixed block, directly or by others: close the gap, give its joints, "
-            "or say that it is free",
+            "joined to a fixed block, directly or by others: close the gap, or by a larger "
+            "tolerance, give its joints, or say that it is free",
         )
 
 

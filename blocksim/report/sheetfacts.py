@@ -11,22 +11,26 @@ from blocksim.arch.answers import ArchAnswer
 from blocksim.ask.check import Check
 from blocksim.blocks.acting import tilt_and_lean
 from blocksim.blocks.joints import joint_names
-from blocksim.blocks.maker import Kind
+from blocksim.blocks.maker import Kind, Table
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.road import fill_of
+from blocksim.blocks.road import fill_density, fill_of, takes_fill
 from blocksim.common.fields import fields_of
 from blocksim.limit.carried import Carried
 from blocksim.report.problems import weighed_arch
 from blocksim.report.sheettables import percent
-from blocksim.view.arrows import forces_of
+from blocksim.view.arrows import forces_of, push_of
 from blocksim.view.dimensions import Angle, dimensions_of
 from blocksim.view.sheet import LARGEST, Sheet
 from blocksim.view.solidscene import moving_box
 from blocksim.view.thrustlines import thrust_of
 from blocksim.view.units import ForceUnit, common_depth, length_words, unit_weight
 
-MEASURED = ("thickness", "voussoirs", "depth", "radius", "left_deg", "right_deg")
+MEASURED = ("thickness", "voussoirs", "depth", "radius", "left_deg", "right_deg", "at")
 """Parameters of a circular arch that its dimensions say."""
+ON_ROAD = ("fill", "fill_density")
+"""Parameters that are told with the road."""
+BESIDE = {"at": "span", "fill_density": "fill"}
+"""Parameters that say nothing where another is not given."""
 CUBIC = "kN/m\N{SUPERSCRIPT THREE}"
 
 
@@ -61,8 +65,10 @@ def built_facts(sheet: Sheet) -> list[Fact]:
     weight = problem.unit_force * len(assembly.blocks)
     facts.append(Fact("weight of all blocks", unit.words(weight), unit.note))
     factor = f"times {problem.load:g}, the load factor"
+    push = push_of(problem)
+    besides = "besides own weight, together"
     for name, loads, note in (
-        ("dead loads", problem.dead, "besides own weight, together"),
+        ("push" if push else "dead loads", problem.dead, push or besides),
         ("live loads", problem.live, f"together, {factor}"),
     ):
         forces = [force for load in loads for _, force in forces_of(problem, load)]
@@ -93,17 +99,21 @@ def given_facts(problem: Problem[Any]) -> list[Fact]:
     """
     arch = None if problem.in_space else weighed_arch(problem)
     found = [] if problem.maker is None else _parameters(problem.maker, "")
-    return [each for each in found if arch is None or each.name not in MEASURED]
+    told = () if problem.in_space else (*(() if arch is None else MEASURED), *ON_ROAD)
+    return [each for each in found if each.name.removeprefix("arch.") not in told]
 
 
-def _parameters(maker: Kind[Any], path: str) -> list[Fact]:
+def _parameters(maker: Table, path: str) -> list[Fact]:
     found: list[Fact] = []
     for name, known in fields_of(type(maker)).items():
         value = getattr(maker, name)
         if isinstance(value, Kind):
             found.append(Fact(f"{path}{name}", value.name, known.about))
             found += _parameters(cast("Kind[Any]", value), f"{path}{name}.")
-        elif value is not None:
+        elif known.nested == "tables":
+            for place, row in enumerate(value, 1):
+                found += _parameters(row, f"{path}{name} {place}: ")
+        elif value is not None and getattr(maker, BESIDE.get(name, ""), 0) is not None:
             unit = f" {known.unit}" if known.unit and not isinstance(value, str) else ""
             found.append(Fact(f"{path}{name}", f"{known.said(value)}{unit}", known.about))
     return found
@@ -114,6 +124,10 @@ def road_facts(problem: Problem) -> list[Fact]:
     fill, facts = fill_of(problem), list[Fact]()
     if fill is not None:
         facts.append(Fact("fill", length_words(fill.height), "over the crown"))
+        heavy = unit_weight(problem)
+        if takes_fill(problem) and heavy is not None:
+            said = f"{fill_density(problem) * heavy / 1e3:.4g} {CUBIC}"
+            facts.append(Fact("unit weight of fill", said))
         facts.append(Fact("weight of fill", f"{fill.weight / 1e3:.6g} kN", "on all blocks"))
     for low, high, weight in problem.road:
         where = f"x = {low:.6g} m" if low == high else f"x = {low:.6g} to {high:.6g} m"
@@ -144,7 +158,8 @@ def load_words(problem: Problem[Any]) -> list[str]:
             words.append("Fill does not press from the side.")
     elif problem.dead:
         count = len(problem.dead)
-        words.append(f"{count} dead load{'s' * (count > 1)} besides own weight.")
+        dead = f"{count} dead load{'s' * (count > 1)} besides own weight."
+        words.append(f"A push: {push}." if (push := push_of(problem)) else dead)
     if problem.live:
         factor = (
             f"times {problem.load:g}" if problem.load else "not on it: the load factor is 0"
@@ -170,7 +185,7 @@ def assumptions(problem: Problem[Any]) -> list[str]:
         "Coulomb friction in all joints, without cohesion."
     )  # fmt: skip
     return [
-        "Blocks are rigid, and supports do not move.",
+        "Blocks are rigid, and supports do not give way.",
         "Joints bear no tension; "
         + (
             "compressive strength is unlimited."
@@ -224,8 +239,8 @@ def _margin_facts(carried: Carried, *, of_thickness: bool) -> list[Fact]:
         )  # fmt: skip
         facts.append(Fact("friction factor", said, needed))
     if carried.strength_used is not None:
-        both = "of width and of friction at once, in the state of greatest margin"
-        facts.append(Fact("strength used", percent(carried.strength_used), both))
+        both = "at most, of width or friction, in the state of greatest margin"
+        facts.append(Fact("joints used", percent(carried.strength_used), both))
     return facts
 
 
@@ -248,6 +263,8 @@ def thrust_facts(sheet: Sheet) -> list[Fact]:
     carried, unit, problem = sheet.carried, sheet.unit, sheet.problem
     if carried is None or carried.joint is None or not (carried.least and carried.greatest):
         return []
+    if carried.stands and sheet.thrust is None:
+        return []
     name = joint_names(problem.assembly)[carried.joint]
     said = [
         "without limit"
@@ -259,6 +276,8 @@ def thrust_facts(sheet: Sheet) -> list[Fact]:
         Fact("least thrust", said[0], f"at joint {name}"),
         Fact("greatest thrust", said[1], f"at joint {name}"),
     ]
+    if said[0] == said[1]:
+        return [Fact("thrust", said[0], f"at joint {name}; statics alone say it")]
     if carried.stands and carried.forces is not None:
         safest = thrust_of(problem, carried.forces, carried.joint)
         facts.append(Fact("thrust at greatest margin", unit.words(safest), f"at joint {name}"))

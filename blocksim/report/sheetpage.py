@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections import Counter
 from typing import Any
 
@@ -31,6 +32,7 @@ from blocksim.report.sheetfacts import (
     thrust_facts,
 )
 from blocksim.report.sheettables import (
+    HINGE,
     MOST,
     joint_rows,
     reaction_table,
@@ -84,8 +86,8 @@ def structure_page(
         most=MOST,
         version=__version__,
         made=made_at(),
-        took="" if is_dated() else f", in {answer.wall_s:.2g} s",
-        command=command,
+        took="" if is_dated() else f", in {answer.wall_s:.2g}\N{NO-BREAK SPACE}s",
+        command=re.findall(r"(?:'[^']*'|[^\s'])+", command),
         settings=settings,
         **_said(answer, sheet),
         **_drawn(sheet, answer, answer if fall is None else fall["answer"]),
@@ -106,7 +108,7 @@ def _said(answer: Check[Any], sheet: Sheet) -> dict[str, object]:
     return {
         "title": sheet.title,
         "source": problem.source,
-        "notes": problem.notes,
+        "notes": [f"{each[0].upper()}{each[1:]}." for each in problem.notes],
         "verdicts": _verdicts(answer, sheet),
         "titles": dict(sheet.titles.said),
         "proof": proof_words(answer) if answer.method == "limit" else "",
@@ -121,6 +123,7 @@ def _said(answer: Check[Any], sheet: Sheet) -> dict[str, object]:
         "forces": force_words(sheet.unit),
         "unit": sheet.unit.name,
         "joints": (rows[:half], rows[half:]) if len(rows) > FEW else (rows,),
+        "hinged": any(row.width_used == HINGE for row in rows),
         "joint_count": len(problem.assembly.joints),
         "solid": problem.in_space,
         "axes": "xyz" if problem.in_space else "HV",

@@ -14,13 +14,14 @@ from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.limit import in_world, reactions
 from blocksim.view.sheet import Sheet
 from blocksim.view.solidscene import pressed
-from blocksim.view.thrustlines import is_chained
 from blocksim.view.units import ForceUnit
 
 MOST = 60
 """Joints in the table; of more, those that are used most."""
 MANY_SUPPORTS = 12
 """Supports in the table of reactions."""
+HINGE = "hinge"
+"""Said in place of a share of width where blocks meet at a corner."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +44,7 @@ def reaction_table(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
     if carried is None or not carried.stands or carried.forces is None:
         return [], []
     columns = [("greatest margin", carried.forces)]
-    if is_chained(problem):
+    if any(line.name != "safest" for line in sheet.lines):
         for name, end in (
             ("greatest thrust", carried.greatest),
             ("least thrust", carried.least),
@@ -82,9 +83,11 @@ def joint_rows(sheet: Sheet) -> list[JointRow]:
             name=names[k],
             normal=unit.number(float(found.normal[k])),
             friction=unit.number(float(found.friction[k])),
-            eccentricity="-" if np.isnan(off[k]) else f"{1e3 * off[k] + 0.0:.0f}",
+            eccentricity="-"
+            if joints.is_corner[k] or np.isnan(off[k])
+            else f"{round(1e3 * off[k]) + 0:d}",
             stress=_stress(float(found.stress[k])) if known else "-",
-            width_used=percent(float(found.width_used[k])),
+            width_used=HINGE if joints.is_corner[k] else percent(float(found.width_used[k])),
             friction_used=percent(float(found.friction_used[k])),
             worst=k == worst,
         )
@@ -93,7 +96,7 @@ def joint_rows(sheet: Sheet) -> list[JointRow]:
 
 
 def _stress(pascal: float) -> str:
-    return "-" if math.isnan(pascal) else f"{pascal / 1e6:.3g}"
+    return "-" if math.isnan(pascal) else f"{pascal / 1e6:#.3g}".rstrip(".")
 
 
 def percent(share: float) -> str:

@@ -13,7 +13,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.shaking import Shaking
 from blocksim.blocks.space.extruded import UP
-from blocksim.view.arrows import forces_of
+from blocksim.view.arrows import forces_of, is_push
 from blocksim.view.canvas import Label, Panel, Shape, arrow, colour, width_of
 from blocksim.view.following import View
 from blocksim.view.placing import UPRIGHT
@@ -188,18 +188,13 @@ def _loads(problem: Problem[Any]) -> Iterator[tuple[str, float, Load]]:
         yield from (("live", problem.load, load) for load in problem.live)
 
 
-def _is_push(problem: Problem[Any], load: Load) -> bool:
-    """Tell whether a load acts on all blocks, by the weight of each: one arrow shows it."""
-    return load.per_weight and len(load.blocks) == len(problem.assembly.blocks) > 1
-
-
 def _pushes(problem: Problem[Any]) -> list[tuple[str, Array]]:
     """Collect pushes: kind, and share of the weight, y upwards, (3,)."""
     flat = np.diag([1.0, 1.0, 0.0])
     return [
         (kind, factor * (UPRIGHT if problem.in_space else flat) @ np.resize(load.force, 3))
         for kind, factor, load in _loads(problem)
-        if _is_push(problem, load)
+        if is_push(problem, load)
     ]
 
 
@@ -208,7 +203,7 @@ def _resultants(problem: Problem[Any]) -> list[tuple[str, int, Array, Array]]:
     return [
         (kind, block, arm / problem.assembly.size, factor * force)
         for kind, factor, load in _loads(problem)
-        if not _is_push(problem, load)
+        if not is_push(problem, load)
         for block, force, arm in _acting(problem, load)
     ]
 

@@ -97,6 +97,8 @@ def draw_loads(axes: Axes, problem: Problem, extent: float) -> list[Array]:
             continue
         most = max(size for size, (name, *_) in zip(sizes, drawn, strict=True) if name == kind)
         tone, words = (DEAD, "dead load, ") if kind == "dead" else (LIVE, f"live load {at}")
+        if kind == "dead" and (push := push_of(problem)):
+            words = f"push, {push}, "
         line = np.array([place - scale * force, place])
         name = f"{words}largest {force_words(most)}"
         arrow(axes, line, tone, f"{kind}-{index}", name, zorder=9)
@@ -123,6 +125,20 @@ def forces_of(problem: Problem[Any], load: Load) -> list[tuple[Array, Array]]:
         )
         for block in load.blocks
     ]
+
+
+def is_push(problem: Problem[Any], load: Load) -> bool:
+    """Tell whether a load acts on all blocks, by the weight of each."""
+    return load.per_weight and len(load.blocks) == len(problem.assembly.blocks) > 1
+
+
+def push_of(problem: Problem[Any]) -> str | None:
+    """Say the push that is the only dead load of a problem; None where it is another."""
+    if len(problem.dead) != 1 or not is_push(problem, load := problem.dead[0]):
+        return None
+    across, up = load.force[0], load.force[-1]
+    way = "" if up else f" to the {'right' if across > 0 else 'left'}"
+    return f"{np.linalg.norm(load.force):.4g} of each weight{way}"
 
 
 def force_words(newtons: float) -> str:
@@ -169,8 +185,15 @@ def draw_gravity(axes: Axes, problem: Problem, shown: Array) -> list[Array]:
 
 def draw_use(axes: Axes, problem: Problem, carried: Resultants) -> None:
     """Colour joints by the larger of the shares of width and friction that they use."""
-    for index, joint in enumerate(problem.assembly.joints):
-        if joint.is_corner or math.isnan(carried.point[index, 0]):
+    joints = problem.assembly.joints
+    order: list[int] = np.argsort(carried.used, kind="stable").tolist()
+    for index in order:
+        joint = joints[index]
+        if math.isnan(carried.point[index, 0]):
+            continue
+        if joint.is_corner:
+            axes.plot(*joint.inner, "o", ms=5, mfc="white", mec=INK, zorder=9,
+                      label="hinge", gid=f"hinge-{index}")  # fmt: skip
             continue
         words, tone = use_of(float(carried.used[index]))
         ends = np.array([joint.inner, joint.outer])

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from blocksim.ask.bracket import Bracket
 from blocksim.ask.crossing import HEADINGS, Crossing
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.road import road_of
 from blocksim.common.words import printable
 from blocksim.simulation.verdict import Verdict
@@ -24,8 +25,9 @@ from blocksim.view.style import FONT, INK, LIVE, QUIET, THRUST, VERDICTS
 DASHES = ("-", (0, (5, 2)))
 HIGHEST = 5.0
 """Load factor over the least one, up to which the curve is shown."""
-SIZE = (7.6, 7.2)
-"""[inches]"""
+SIZE, CURVES, ASIDE, TALLEST = (7.6, 4.4), (2.0, 1.3), 0.8, 5.0
+"""Width of an envelope, and height of its curves with their parts of it; room beside the
+drawing below them, and its greatest height [inches]."""
 BEYOND = 3.0
 """How far values are drawn beyond the bracket, in its widths, and at least a tenth of it."""
 
@@ -64,11 +66,19 @@ def envelope_figure(answer: Crossing) -> Figure:
     """
     with mpl.rc_context(FONT):
         figure = new_figure(SIZE, pad=0.1)
-        rows = figure.subplots(3, 1, sharex=True, height_ratios=(2, 1.3, 2))
+        rows = figure.subplots(3, 1, sharex=True, height_ratios=(*CURVES, 2))
         factors, thrusts, drawn = rows.ravel().tolist()
         _factors(factors, answer)
         _thrusts(thrusts, answer)
-        _structure(drawn, answer)
+        low, high = _structure(drawn, answer)
+        # The drawing has the height it needs, as wide as the curves are.
+        left, right = min(low[0], drawn.get_xlim()[0]), max(high[0], drawn.get_xlim()[1])
+        wide, height = SIZE[0] - ASIDE, 1.08 * float(high[1] - low[1])
+        spare = max(0.0, height * wide / TALLEST - (right - left))
+        drawn.set_xlim(left - spare / 2, right + spare / 2)
+        tall = wide * height / (right - left + spare)
+        figure.set_size_inches(SIZE[0], SIZE[1] + tall)
+        rows[0].get_gridspec().set_height_ratios((*CURVES, tall))
         drawn.set_xlabel("middle of the axles [m]")
         title = f"{title_of(answer.problem)}: {printable(answer.vehicle.words)}"
         figure.suptitle(literal(title), x=0.02, ha="left", fontsize=10)
@@ -117,7 +127,8 @@ def _thrusts(axes: Axes, answer: Crossing) -> None:
                   ha="center", transform=axes.transAxes)  # fmt: skip
 
 
-def _structure(axes: Axes, answer: Crossing) -> None:
+def _structure(axes: Axes, answer: Crossing) -> tuple[Array, Array]:
+    """Draw the worst place; return the corners of what is drawn [m]."""
     problem, road = answer.problem, road_of(answer.problem)
     shown = draw_structure(axes, problem, answer.mechanism)
     height = float(shown[0][:, 1].max()) if road is None else road
@@ -126,6 +137,10 @@ def _structure(axes: Axes, answer: Crossing) -> None:
               gid="axles", zorder=10)  # fmt: skip
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_ylabel("height [m]")
+    points = np.concatenate([*shown, [[answer.worst.axles[0], height]]])
+    low, high = points.min(axis=0), points.max(axis=0)
+    axes.set_ylim(float(low[1]), float(high[1]))
+    return low, high
 
 
 def range_figure(answer: Bracket) -> Figure:

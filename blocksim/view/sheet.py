@@ -169,13 +169,17 @@ def _statics(problem: Problem, carried: Carried, unit: ForceUnit) -> dict[str, A
     told = None
     if carried.stands:
         if chained and joint is not None and carried.least and carried.greatest:
+            low, high = (
+                each.thrust * problem.unit_force for each in (carried.least, carried.greatest)
+            )
+            told = joint, _range_words(low, high, unit)
             for name, words, found in (
                 ("min", "least thrust", carried.least),
                 ("max", "greatest thrust", carried.greatest),
             ):
-                if found.forces is not None:
+                # Where the thrust has no range, they are the line of greatest margin.
+                if found.forces is not None and not _is_one(low, high, unit):
                     drawn.append(_line(problem, name, words, found.forces, joint, unit))
-            told = joint, _range_words(problem, carried, unit)
         if chained:
             words = "greatest margin"
             drawn.append(_line(problem, "safest", words, forces, joint, unit))
@@ -205,17 +209,17 @@ def _line(
     return ThrustLine(name=name, words=said, paths=tuple(thrust_lines(problem, forces)))
 
 
-def _range_words(problem: Problem, carried: Carried, unit: ForceUnit) -> str:
-    assert carried.least is not None  # noqa: S101
-    assert carried.greatest is not None  # noqa: S101
-    least, greatest = (
-        math.inf if math.isinf(end.thrust) else end.thrust * problem.unit_force
-        for end in (carried.least, carried.greatest)
-    )
-    low = unit.number(least)
+def _is_one(least: float, greatest: float, unit: ForceUnit) -> bool:
+    """Tell whether both are the same in the words of a drawing."""
+    return math.isfinite(greatest) and unit.number(least) == unit.number(greatest)
+
+
+def _range_words(least: float, greatest: float, unit: ForceUnit) -> str:
     if math.isinf(greatest):
-        return f"thrust {low} {unit.name} or more"
-    return f"thrust {low} to {unit.words(greatest)}"
+        return f"thrust {unit.words(least)} or more"
+    if _is_one(least, greatest, unit):
+        return f"thrust {unit.words(least)}"
+    return f"thrust {unit.number(least)} to {unit.words(greatest)}"
 
 
 def title_of(problem: Problem) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
+from dataclasses import replace
 from typing import Any
 
 import matplotlib as mpl
@@ -75,6 +76,7 @@ def sheet_figure(
         figure.set_size_inches(layout.paper.width / INCH, layout.paper.height / INCH)
         axes.set_xlim(float(layout.low[0]), float(layout.high[0]))
         axes.set_ylim(float(layout.low[1]), float(layout.high[1]))
+        _draw_reactions(axes, sheet, layout, float(low[1]))
         measured = [] if sheet.pressed else dimensions_of(problem, points, layout.scale)
         for each in measured:
             if isinstance(each, Length):
@@ -83,7 +85,6 @@ def sheet_figure(
                 _draw_angle(axes, each, layout)
         _draw_numbers(axes, sheet, layout)
         _draw_thrust(axes, sheet, layout, float(high[1]))
-        _draw_reactions(axes, sheet, layout, float(low[1]))
         _draw_words(figure, axes, sheet, layout, bare=bare)
         if entries:
             at = layout.edge / layout.paper.width, layout.edge / layout.paper.height
@@ -156,7 +157,10 @@ def _draw_line(axes: Axes, name: str, words: str, paths: tuple[Array, ...]) -> N
 
 def _draw_length(axes: Axes, each: Length, layout: Layout) -> None:
     """Draw a dimension line with oblique strokes, lines that lead to it, and its words."""
-    line, along, mm = each.line, each.along, layout.mm
+    mm = layout.mm
+    if each.what == "height":
+        each = replace(each, at=layout.left_of_words(axes, each.line))
+    line, along = each.line, each.along
     across = np.array([-along[1], along[0]])
     gid = f"dimension-{each.what}"
     for foot, point in zip(line, each.ends, strict=True):
@@ -182,7 +186,7 @@ def _draw_length(axes: Axes, each: Length, layout: Layout) -> None:
         side = 1.0 if each.what == "width" else -1.0
         at, away = middle + np.array([0.0, side]) * mm, (0.0, side)
         style = {"ha": "center", "va": "bottom" if side > 0 else "top"}
-    elif long > LONG:
+    elif long > LONG or each.what == "height":
         # Along the line, lest they go into what is drawn beside it.
         at, away = middle - np.array([mm, 0.0]), (0.0, 1.0)
         style = {"ha": "right", "va": "center", "rotation": 90}
@@ -254,7 +258,8 @@ def _draw_thrust(axes: Axes, sheet: Sheet, layout: Layout, top: float) -> None:
     axes.plot(*lead.T, color=QUIET, lw=0.5, zorder=9, gid="thrust-lead")
     # The half-angle is told to the right of the crown.
     side = "center" if half_angle_of(sheet.problem) is None else "right"
-    layout.write(axes, foot + np.array([0.5, 0.6]) * mm, words, (0.0, 1.0), ha=side,
+    aside = -1.5 if side == "right" else 0.5
+    layout.write(axes, foot + np.array([aside, 0.6]) * mm, words, (0.0, 1.0), ha=side,
                  va="bottom", gid="thrust-words")  # fmt: skip
 
 

@@ -19,7 +19,7 @@ MARGIN, NARROW = 12.0, 2.0
 """Around the page, and around what is put into a page [mm]."""
 WIDE, COLUMNS = 250.0, 2
 """Width of a page that has room for a scale beside the legend [mm], and its columns."""
-SIDE, ABOVE, BELOW, BARE = 22.0, 14.0, 24.0, 5.0
+SIDE, ABOVE, BELOW, BARE = 22.0, 14.0, 24.0, 3.0
 """Room for dimensions beside and above what is drawn, for reactions below it; for nothing."""
 LINE, TITLE = 4.2, 8.0
 """Height of a line of words, and of the title."""
@@ -58,6 +58,15 @@ class Layout:
     def high(self) -> Array:
         """What lies at the upper right corner [m]."""
         return self.low + np.array([self.paper.width, self.paper.height]) * self.mm
+
+    def left_of_words(self, axes: Axes, line: Array) -> Array:
+        """Return the place of an upright line [m], moved left of words that are beside it."""
+        (x, low), (beside, high) = axes.transData.transform([line[0], line[1] + [self.mm, 0]])
+        dots = float(beside - x)
+        for box in sorted(self.words, key=lambda box: -box.x0):
+            if box.x0 < x + dots and box.x1 > x - dots and box.y0 < high and box.y1 > low:
+                x = box.x0 - 2 * dots
+        return axes.transData.inverted().transform((x, low))
 
     def write(
         self, axes: Axes, at: Array, words: str, away: tuple[float, float], **style: Any

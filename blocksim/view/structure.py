@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -212,17 +213,24 @@ def draw_structure(
 
 
 def _draw_gaps(axes: Axes, problem: Problem) -> None:
-    """Mark joints at which a gap or an overlap of the drawing is closed, with its size."""
-    joints = problem.assembly.joints
-    for rank, (index, gap) in enumerate(marked_gaps(problem.assembly).items()):
+    """Mark joints at which a gap or an overlap of the drawing is closed.
+
+    The legend has the size of most of them; others have theirs beside them.
+    """
+    joints, gaps = problem.assembly.joints, marked_gaps(problem.assembly)
+    sizes = {index: f"{1000 * gap:+.3g} mm" for index, gap in gaps.items()}
+    usual = Counter(sizes.values()).most_common(1)
+    others = [index for index, size in sizes.items() if size != usual[0][0]]
+    for index, size in sizes.items():
         joint = joints[index]
         ends = np.array([joint.inner, joint.outer])
         axes.plot(*ends.T, color=GAP, ls=line_style(GAP), lw=1.8, zorder=2.5,
                   solid_capstyle="butt", marker="D" if joint.is_corner else "", ms=4,
-                  gid=f"gap-{index}", label="closed gap (+) or overlap (-)")  # fmt: skip
-        if rank < SIZED:
+                  label=f"closed gap (+) or overlap (-), {usual[0][0]} where not said",
+                  gid=f"gap-{index}")  # fmt: skip
+        if index in others[:SIZED]:
             x, y = joint.tangent if joint.tangent[0] >= 0 else -joint.tangent
-            axes.annotate(f"{1000 * gap:+.3g} mm", ends.mean(axis=0), xytext=(-3 * y, 3 * x),
+            axes.annotate(size, ends.mean(axis=0), xytext=(-3 * y, 3 * x),
                           textcoords="offset points", ha="center", va="bottom", color=GAP,
                           rotation=math.degrees(math.atan2(y, x)), rotation_mode="anchor",
                           fontsize=6.5, zorder=8, gid=f"gap-size-{index}")  # fmt: skip
