@@ -151,6 +151,7 @@ def ask(case: Case, engine: str) -> Row:
         "own_overlap": recording.quality.penetration,
         "own_overlap_of_smallest": recording.overlap_share,
         "own_gain": recording.quality.gain,
+        "own_residual": recording.quality.residual,
         "cpu_s": round(cpu_s, 2),
     }
 

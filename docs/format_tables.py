@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from inspect import cleandoc
 from typing import Any
 
 from markdown_table import table
@@ -57,7 +58,7 @@ def _described(part: dict[str, Any]) -> dict[str, str]:
     text = part.get("description", "")
     base = {"StructureFile": Around, "DesignFile": How}.get(part.get("title", ""))
     if base is not None:
-        text += "\n" + re.sub(r"^ {4}", "", base.__doc__ or "", flags=re.MULTILINE)
+        text += "\n" + cleandoc(base.__doc__ or "")
     said = dict[str, str]()
     for names, first, rest in re.findall(
         r"^((?:`\w+`(?:, )?)+): ([^\n]*\n?)((?:    [^\n]*\n?)*)", text, flags=re.MULTILINE

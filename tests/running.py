@@ -11,7 +11,8 @@ from collections.abc import Callable
 from pathlib import Path
 from unittest import mock
 
-from blocksim import cli
+from blocksim import MissingPart, cli
+from blocksim.engines import NAMES
 
 PROGRAM = (sys.executable, "-m", "blocksim")
 
@@ -46,6 +47,9 @@ def inside(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProc
         contextlib.redirect_stderr(complaints),
     ):
         code = cli._code()
+    part, absent, remedy = complaints.getvalue().partition(" is not available here: ")
+    if absent and part.removeprefix("blocksim: ") in NAMES:
+        raise MissingPart(part.removeprefix("blocksim: "), remedy)
     return subprocess.CompletedProcess(arguments, code, out.getvalue(), complaints.getvalue())
 
 

@@ -116,7 +116,5 @@ CLASSICS: Mapping[str, Callable[[float], Problem]] = {
 def test_stands_inside_and_falls_outside(
     engine: str, name: str, share: float, expected: Verdict
 ) -> None:
-    if engine != "direct":
-        pytest.importorskip(engine, exc_type=ImportError)
     seen = check(CLASSICS[name](share), method=engine)
     assert seen.verdict is expected, seen.reason

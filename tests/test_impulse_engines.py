@@ -32,12 +32,6 @@ EACH = [
 ]
 
 
-@pytest.fixture(autouse=True)
-def installed(request: pytest.FixtureRequest) -> None:
-    """Wheels of pybullet are not there for newer Pythons, mujoco is optional."""
-    pytest.importorskip(request.getfixturevalue("engine"), exc_type=ImportError)
-
-
 @pytest.mark.parametrize("side", [-1, 1])
 @pytest.mark.parametrize(("engine", "arch"), EACH)
 def test_both_sides_of_the_least_thickness(engine: str, arch: Any, side: int) -> None:

@@ -39,8 +39,6 @@ def lies_still(recording: Recording) -> bool:
     ],
 )
 def test_a_collapse_ends_on_the_ground(engine: str, case: rubble.Case) -> None:
-    if engine != "direct":
-        pytest.importorskip(engine, exc_type=ImportError)
     problem = rubble.drawn(case)
     recording = simulate(problem, method=engine, duration=rubble.LONGEST)
     found = rubble.measured(recording)
@@ -60,7 +58,6 @@ def test_a_collapse_ends_on_the_ground(engine: str, case: rubble.Case) -> None:
 
 def test_what_leaves_the_plane_falls_onto_the_ground() -> None:
     """An arch in gravity that leans out of its plane overturns, and lies on its side."""
-    pytest.importorskip("pybullet")
     arch = Arch(half_angle=math.pi / 2, eta=0.3, voussoirs=5, depth=0.3)
     problem = CircularArch.of(arch, 0.8).problem().leaning(math.radians(20))
     recording = simulate(problem, method="pybullet", duration=8.0)

@@ -19,6 +19,7 @@ from blocksim.blocks.loads import LoadsOf, Names, acting_of, name_of, sides_of
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Move, Problem
+from blocksim.blocks.rows import column
 from blocksim.blocks.shaking import shaking_of, shaking_record
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
@@ -123,7 +124,7 @@ def problem_of(
     """
     acts = acting_of(written, LoadsOf(bodies), np.array(Assembly.down))
     mu = written.friction
-    own = {joint.friction for joint in assembly.joints}
+    own = set(column(assembly.joints, "friction"))
     if len(own) == 1 and own != {None}:
         # All joints have the same friction of their own: it is that of the structure.
         mu = own.pop() or 0.0

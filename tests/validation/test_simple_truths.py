@@ -36,16 +36,13 @@ ENOUGH = 1.0
     ]
 )
 def engine(request: pytest.FixtureRequest) -> str:
-    """Every engine by name; pybullet has no wheels for newer Pythons, mujoco is optional."""
-    if request.param in {"pybullet", "mujoco"}:
-        pytest.importorskip(request.param, exc_type=ImportError)
+    """Every engine by name."""
     return request.param
 
 
 @pytest.fixture
 def spatial() -> str:
     """The engine in three dimensions."""
-    pytest.importorskip("pybullet")
     return "pybullet"
 
 
