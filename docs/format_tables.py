@@ -11,14 +11,13 @@ from markdown_table import table
 from pydantic import TypeAdapter
 
 from blocksim.blocks.entries import Around, StructureFile
-from blocksim.kinds.scenarios import ScenarioFile
 from blocksim.sweeps.design import How
 from blocksim.sweeps.load import DesignFile
 
 
 def of_format(which: str) -> str:
     """Tables of the keys of a file: one of its top, one for each table inside it."""
-    schemas = {"structure": StructureFile, "scenario": ScenarioFile, "design": DesignFile}
+    schemas = {"structure": StructureFile, "design": DesignFile}
     schema = TypeAdapter(schemas[which]).json_schema()
     parts = {"": schema, **{_word(name): part for name, part in schema["$defs"].items()}}
     tables = [

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from markdown_table import table
 
 from blocksim.arch import theory
+from blocksim.arch.circular import Arch
 from blocksim.arch.limit import least_thickness
-from blocksim.kinds.scenarios import load_scenario, shipped
+from blocksim.kinds.circular import CircularArch
 from blocksim.studies.questions import StructureRow
 from blocksim.studies.validate import structures, validate
 
@@ -23,7 +24,7 @@ def of_validation(which: str) -> str:
     return {
         "landmarks": _landmarks,
         "captions": _captions,
-        "scenarios": _scenarios,
+        "arches": _arches,
         "structures": _structures,
     }[which]()
 
@@ -79,29 +80,29 @@ def _captions() -> str:
     return table(headings, rows)
 
 
-def _scenarios() -> str:
-    """Least thickness of each shipped scenario: known, by theory, and as built."""
+def _arches() -> str:
+    """Least thickness of each shipped arch: known, by theory, and as built."""
     rows = list[list[str]]()
-    for name in shipped():
-        each = load_scenario(name)
-        if not each.expected_modes:
+    for known in structures(quick=False):
+        problem, expected = known.problem, known.expect[0]
+        if not expected.modes:
             continue
-        arch = each.arch(1.0)
-        found = theory.least_thickness(arch.half_angle, each.mu, arch.weight)
-        built = least_thickness(arch.half_angle, each.mu, arch.voussoirs, arch.weight).eta
+        arch = cast("Arch", cast("CircularArch", problem.maker).shape)
+        found = theory.least_thickness(arch.half_angle, problem.mu, arch.weight)
+        built = least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight).eta
         rows.append(
             [
-                f"`{name}`",
+                f"`{known.name}`",
                 f"{math.degrees(arch.half_angle):.6g}",
-                f"{each.mu:.6g}",
-                ", ".join(str(mode) for mode in each.expected_modes),
-                _eta(each.expected_eta),
+                f"{problem.mu:.6g}",
+                ", ".join(expected.modes),
+                _eta(expected.eta),
                 _eta(found.eta),
                 f"{_eta(built)} (n = {arch.voussoirs})",
-                each.source.replace("|", "\\|"),
+                problem.source.replace("|", "\\|"),
             ]
         )
-    headings = ["scenario", "alpha", "mu", "modes", "known eta", "theory", "as built", "source"]
+    headings = ["arch", "alpha", "mu", "modes", "known eta", "theory", "as built", "source"]
     return table(headings, rows)
 
 
@@ -111,7 +112,7 @@ def _eta(value: float | None) -> str:
 
 def _structures() -> str:
     """Set what is known of each shipped structure beside what limit analysis says."""
-    known = structures(quick=False)
+    known = [each for each in structures(quick=False) if not each.expect[0].modes]
     asked = {(row.structure, row.question): row for row in validate(known, [], workers=1)}
     rows = list[list[str]]()
     for each in known:

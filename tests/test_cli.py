@@ -40,7 +40,7 @@ def test_check_answers_with_its_exit_code(
     }
 
 
-def test_options_override_the_scenario() -> None:
+def test_options_override_the_file() -> None:
     done = blocksim("bracket", "semicircle", "--alpha", "125", "--mu", "0.9", "--json")
     answer = json.loads(done.stdout)
     assert answer["arch"]["half_angle_deg"] == pytest.approx(125)

@@ -13,9 +13,8 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from running import inside
 
-from blocksim import Arch
+from blocksim import Arch, load
 from blocksim.arch.dimensions import LINES, At, Dimensions, dimensions_of
-from blocksim.kinds.scenarios import load_scenario
 
 EXACT = 1e-14
 SIZE = ("--span", "8", "--rise", "3", "--thickness", "0.45")
@@ -138,31 +137,25 @@ def test_without_a_thickness_the_line_that_was_measured_stays() -> None:
     assert at_ratio["problem"]["rise_m"] == pytest.approx(3, rel=EXACT)
 
 
-SCENARIO = """
-title = "A bridge"
-source = "measured"
-
-[arch]
-voussoirs = 31
-span_m = 8.0
-rise_m = 3.0
-thickness_m = 0.45
-unit_weight_kN_per_m3 = 22.0
-
-[contact]
-friction_angle_deg = 35.0
-"""
-
-
-def test_a_scenario_in_metres(tmp_path: Path) -> None:
+def test_a_file_in_metres(tmp_path: Path) -> None:
     path = tmp_path / "bridge.toml"
-    path.write_text(SCENARIO)
-    found = load_scenario(path)
-    arch = found.maker.shape
+    path.write_text(
+        f"""
+        kind = "circular-arch"
+        friction = {math.tan(math.radians(35))!r}
+        density = 22_000
+        voussoirs = 31
+        span = 8.0
+        rise = 3.0
+        thickness = 0.45
+        """
+    )
+    arch = load(path).maker.shape
     assert arch.half_angle == pytest.approx(ALPHA, rel=EXACT)
     assert (arch.weight, arch.specific_weight) == ("sector", 22_000)
     one = json.loads(inside("check", str(path), "--json").stdout)
     two = json.loads(inside("check", *ASKED, "--unit-weight", "22", "--json").stdout)
+    assert one.pop("problem") == {**two.pop("problem"), "title": "circular-arch"}
     assert {**one, "wall_s": 0} == {**two, "wall_s": 0}
     # One measure given instead of the file's: the others stay.
     told = json.loads(inside("check", str(path), "--thickness", "0.6", "--json").stdout)

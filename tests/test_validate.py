@@ -15,27 +15,20 @@ import numpy as np
 import pytest
 from report_rows import ARCH, ROW, sliding
 from running import inside as blocksim
+from test_scenario import ARCHES, LEANING
 
 from blocksim import CircularArch, InputError, Mode, Verdict, load_recording
 from blocksim.cli.studies import validation_lines
 from blocksim.common.files import json_text
-from blocksim.kinds.scenarios import load_scenario, shipped
+from blocksim.kinds.loading import Known, load_known
 from blocksim.report.tables import write_results
 from blocksim.studies.agreement import disagreements
-from blocksim.studies.validate import scenarios, unasked, validate, validate_one
+from blocksim.studies.validate import unasked, validate, validate_one
 from blocksim.sweeps import load_design
 
 
-def test_quick_scenarios_are_spread_over_the_map() -> None:
-    quick = scenarios(quick=True)
-    modes = {mode for scenario in quick for mode in scenario.expected_modes}
-    assert len(quick) >= 10
-    assert modes >= {Mode.RRR, Mode.SS, Mode.SRR, Mode.RRS, Mode.RSR, Mode.RS}
-    assert len(scenarios(quick=False)) > len(quick)
-
-
 def test_rows_agree_with_limit_analysis_and_are_written(tmp_path: Path) -> None:
-    chosen = [load_scenario(name) for name in ("semicircle", "semicircle_sliding")]
+    chosen = [load_known(name) for name in ("semicircle", "semicircle_sliding")]
     rows = validate(chosen, ("pymunk",), workers=1)
     first, second = rows
     assert abs(first.error or 1) < 0.002
@@ -69,7 +62,8 @@ def test_a_wrong_engine_would_be_a_miss(monkeypatch: pytest.MonkeyPatch) -> None
         return replace(state, eta=state.eta * 1.01, mode=Mode.SRR)
 
     monkeypatch.setattr(module.limit, "least_thickness", shifted)
-    row = validate_one(load_scenario("semicircle"), "pymunk")
+    known = load_known("semicircle")
+    row = validate_one(known, known.expect[0], "pymunk")
     assert "error -1.0" in row.miss or "error -0.9" in row.miss
     assert "mode rrr, limit says srr" in row.miss
 
@@ -79,16 +73,14 @@ def test_modes_that_coincide_on_a_line_of_the_map_are_both_right() -> None:
 
     In a wide bracket `direct` sees rrr at the lower end; at the limit they are rrs.
     """
-    scenario = load_scenario("fig22_first_sliding_149")
-    on_it = validate_one(scenario, "direct", tol=4e-3)
+    known = load_known("fig22_first_sliding_149")
+    on_it = validate_one(known, known.expect[0], "direct", tol=4e-3)
     assert (on_it.mode_observed, on_it.mode_limit) == (Mode.RRR, Mode.RRS)
     assert on_it.miss == ""
     assert on_it.note.startswith("on a line of the map")
-    beside = validate_one(
-        replace(scenario, given={**scenario.given, "friction": 1.0001 * scenario.mu}),
-        "direct",
-        tol=4e-3,
-    )
+    rougher = known.problem.maker.but(friction=1.0001 * known.problem.mu).problem()
+    aside = replace(known, problem=rougher)
+    beside = validate_one(aside, known.expect[0], "direct", tol=4e-3)
     assert (beside.mode_observed, beside.mode_limit) == (Mode.RRR, Mode.RRS)
     assert beside.miss == "mode rrr, limit says rrs"
 
@@ -135,11 +127,9 @@ def test_json_has_no_infinity_however_deep() -> None:
 
 def test_infinite_friction_may_be_a_text_in_files(tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"
-    path.write_text(
-        'title = "t"\nsource = "s"\n[arch]\nhalf_angle_deg = 90\nvoussoirs = 9\n'
-        '[contact]\nmu = "inf"\n'
-    )
-    assert load_scenario(str(path)).mu == math.inf
+    for said in ("inf", '"inf"'):
+        path.write_text(f'kind = "circular-arch"\nfriction = {said}\n')
+        assert load_structure(path).mu == math.inf
     path.write_text('half_angle_deg = 90\nmu = ["inf", 1]\n')
     assert load_design(str(path)).axes["mu"].values == (math.inf, 1.0)
 
@@ -183,26 +173,23 @@ DRAWN = "semicircle_tilted_overturns"
 
 
 @pytest.mark.parametrize(
-    "name",
+    "known",
     [
-        pytest.param(name, marks=[pytest.mark.long] if name == DRAWN else [])
-        for name in shipped()
+        pytest.param(known, marks=[pytest.mark.long] if name == DRAWN else [], id=name)
+        for name, known in {**ARCHES, **LEANING}.items()
     ],
 )
-def test_every_scenario_can_be_checked(name: str) -> None:
-    if load_scenario(name).lean:
+def test_every_shipped_arch_can_be_checked(known: Known) -> None:
+    if known.name in LEANING:
         pytest.importorskip("pybullet")
-    done = blocksim("check", name, "--json")
+    done = blocksim("check", known.name, "--json")
     assert done.stderr == ""
     answer = json.loads(done.stdout)
-    scenario = load_scenario(name)
-    assert answer["problem"]["lean_deg"] == pytest.approx(math.degrees(scenario.lean))
-    assert answer["verdict"] == (scenario.expected_verdict or "collapses")
-    assert ("no thickness was given" in answer["reason"]) == (not scenario.has_thickness)
+    assert answer["verdict"] == (known.expect[0].verdict or "collapses")
 
 
 def test_what_was_not_asked_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    chosen = [load_scenario(name) for name in ("semicircle", "semicircle_tilted_stands")]
+    chosen = [load_known(name) for name in ("semicircle", "semicircle_tilted_stands")]
     plane, *others = unasked(chosen)
     assert (plane.engine, plane.scenarios) == ("pymunk", ("semicircle_tilted_stands",))
     monkeypatch.setattr("blocksim.engines.base.Engine.missing", "get it")
@@ -218,7 +205,7 @@ def test_scenarios_and_doctor_list_figures() -> None:
     line = next(
         x for x in blocksim("scenarios").stdout.splitlines() if "semicircle_tilted_s" in x
     )
-    assert line.split()[1:5] == ["90", "3", "15", "0.2"]
+    assert line.split()[1:4] == ["15", "3", "stands"]
     said = blocksim("doctor").stdout
     assert re.search(r"blocksim \S+, Python 3\.\d+", said)
     assert re.search(r"numpy \d", said)

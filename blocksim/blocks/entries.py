@@ -12,6 +12,7 @@ from blocksim.blocks.shaking import MOST_ROWS
 from blocksim.blocks.shapes import MOST_CORNERS
 from blocksim.common.checks import (
     COORDINATE,
+    ETA,
     FACTOR,
     FORCE,
     INERTIA,
@@ -166,13 +167,16 @@ class ShakeEntry(Written):
 class ExpectEntry(Written):
     """Entry of `expect`: what the source says, for `validate`.
 
-    Either a `verdict` on the structure as it is, or the `value` of `over`.
+    Either a `verdict` on the structure as it is, or the `value` of `over`, or the `modes` of a
+    circular arch.
 
     `over`: A parameter of `bracket`.
     `value`: Where it changes from standing to falling.
     `published`: That value with the digits that were printed.
     `hinges`: Joints that open there, numbered from 0.
     `verdict`: `stands` or `collapses`, of the structure as it is.
+    `modes`: Collapse modes of the continuous arch: several where it lies on a line of the map.
+    `eta`: Its least thickness-to-radius ratio; absent where none stands.
     """
 
     over: Name | None = None
@@ -180,6 +184,8 @@ class ExpectEntry(Written):
     published: Annotated[str, Field(pattern=r"^-?\d+(\.\d+)?$", strict=True)] | None = None
     hinges: tuple[Annotated[int, Field(ge=0, strict=True)], ...] = ()
     verdict: Literal["stands", "collapses"] | None = None
+    modes: Annotated[tuple[Name, ...], Field(min_length=1)] | None = None
+    eta: Annotated[float, ETA] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -245,6 +245,15 @@ class Kind(Shown, Table, ABC, Generic[Blocks]):
         """Return what a recording keeps of it."""
         return {**self.table(), "density": self.unit_weight}
 
+    @classmethod
+    def beside(
+        cls,
+        table: Mapping[str, Any],
+        changes: Mapping[str, object],  # noqa: ARG003 - as below
+    ) -> dict[str, Any]:
+        """Return what a table of a file still says where other values replace some of it."""
+        return {**table}
+
     def but(self, **changes: Any) -> Self:
         """Return the same with other values; `**{"arch.thickness": 0.2}`: of its arch."""
         given = {each.name: getattr(self, each.name) for each in fields(self) if each.init}

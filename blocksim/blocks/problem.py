@@ -256,8 +256,11 @@ class Problem(Shown, Generic[Blocks]):
         """Return the same with gravity leaning out of the plane by an angle [rad]."""
         LEAN.require("lean", lean)
         require(not self.in_space, "lean", lean, "left out in space: tilt towards an azimuth")
-        flat = self.gravity[:2] * math.cos(lean)
-        return replace(self, gravity=np.array([*flat, math.sin(lean)]))
+        strength = float(np.linalg.norm(self.gravity))
+        # It leans in place of how it leaned before.
+        flat = self.gravity[:2] * (strength / float(np.linalg.norm(self.gravity[:2])))
+        leaning = [*flat * math.cos(lean), strength * math.sin(lean)]
+        return replace(self, gravity=np.array(leaning))
 
     def under(self, acceleration: float) -> Self:
         """Return the same where gravity accelerates otherwise than by 9.81 m/s2.

@@ -80,7 +80,7 @@ COMMANDS = {
     ),
     "scenarios": (
         "listing.list_scenarios",
-        "List the scenarios, structures and vehicles that come with blocksim.",
+        "List the structures and vehicles that come with blocksim.",
     ),
     "kinds": (
         "listing.list_kinds",

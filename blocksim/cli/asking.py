@@ -36,8 +36,7 @@ from blocksim.cli.options import (
 )
 from blocksim.cli.output import answer_with, progress
 from blocksim.cli.proving import write_proof
-from blocksim.cli.question import joint_of
-from blocksim.cli.subject import anything_asked, is_many, is_structure
+from blocksim.cli.subject import anything_asked, is_many
 from blocksim.common.checks import require
 from blocksim.report.answers import bracket_record, check_record
 from blocksim.report.answerwords import bracket_lines, check_lines
@@ -87,7 +86,11 @@ def check(
     problem = anything_asked(scene, given, loading, spatial=spatial, thick=True)
     if problem.in_space:
         refuse({"joint": joint, "must_rest": must_rest, "proof": proof})
-    at = None if joint is None else joint_of(joint, joint_names(problem.assembly))
+    at = None
+    if joint is not None:
+        names = joint_names(problem.assembly)
+        require(joint in names, "--joint", joint, f"one like {names[len(names) // 2]}")
+        at = names.index(joint)
     with named_options(), progress() as report:
         answer = ask_check(
             problem,
@@ -135,8 +138,8 @@ def bracket(
     # The thickness of an arch under its own weight need not be given to be sought.
     sought = (
         over in {None, THICKNESS}
+        and scene is None
         and not (crosses or spatial or loading.given)
-        and not is_structure(scene)
     )
     if sought:
         refuse({"eta": given.eta, "ratio": given.ratio}, why="left out: the least is sought")

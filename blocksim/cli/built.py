@@ -90,8 +90,9 @@ class Given:
 
     @property
     def sizes(self) -> dict[str, object]:
-        """Those that are parameters of a kind, by its name of each."""
-        found = given_of(self, *(one.name for one in fields(self) if one.name not in OF_ANY))
+        """Those that are parameters of a kind, friction among them, by its name of each."""
+        names = [one.name for one in fields(self) if one.name not in OF_ANY]
+        found = given_of(self, *names, "friction")
         return {PARAMETERS.get(name, name): each for name, each in found.items()}
 
     @property

@@ -21,8 +21,8 @@ from blocksim.cli.subject import anything_asked, is_many
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.fields import fields_of
+from blocksim.common.files import read_toml
 from blocksim.common.tables import Written, as_said
-from blocksim.kinds.scenarios import written_in
 
 LARGEST_FILE, MOST = 1 << 20, 1000
 """Bytes of a file, and cases in it."""
@@ -60,7 +60,7 @@ def asked_of_cases(
     allowed = "left out with many structures: cases are of one"
     require(scene is None or not is_many(scene), "--cases", str(path), allowed)
     where = str(path)
-    table = written_in(where, "cases", "an existing .toml file", LARGEST_FILE)
+    table = read_toml(where, "cases", "an existing .toml file", LARGEST_FILE)
     written = as_said(CasesFile, table, where)
     found: list[Case] = []
     for at, entry in enumerate(written.case):

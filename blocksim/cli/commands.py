@@ -41,7 +41,7 @@ from blocksim.cli.options import (
     settings_of,
 )
 from blocksim.cli.output import picture_kind, progress, say
-from blocksim.cli.question import question
+from blocksim.cli.question import arch_of
 from blocksim.cli.subject import anything_asked
 from blocksim.common.checks import Range, require
 from blocksim.common.files import require_place
@@ -115,7 +115,7 @@ def render(
         "File to write: .pdf, .svg, .png or .dxf, .mp4 or .gif, or .glb, .gltf, "
         ".csv, .json of a recording, or .html to turn blocks in space around; required."
     ),
-    scene: str | None = argument("Scenario, structure, or a recording: an .npz file."),
+    scene: str | None = argument("Structure, or a recording: an .npz file."),
     beside: Path | None = BESIDE,
     view: Literal["2d", "3d"] = VIEW,
     slow: float | None = SLOW,
@@ -130,12 +130,12 @@ def render(
     thrust, reactions, and how it falls. Of an arch without a thickness the picture is of the
     continuous arch at its least, with its lines of thrust and friction, in each of its
     collapse modes. Everything else is drawn from a recording: a film, a view in 3d, a frame
-    of an .npz file, an animated model (glTF), tables. A scenario is simulated first, 1 % below
-    its least thickness where none is given. With --must-rest a picture shows the motion that
-    friction lets begin, and a film the blocks let go along it in direct.
+    of an .npz file, an animated model (glTF), tables. A structure is simulated first, an arch
+    1 % below its least thickness where none is given. With --must-rest a picture shows the
+    motion that friction lets begin, and a film the blocks let go along it in direct.
     """
     if scene is None:
-        question(scene, given, out=out)
+        arch_of(given, out=out)
     require_given(out=out)
     out = out or Path()
     kind = picture_kind(out, (*FILMS, "png", "svg", "pdf", "dxf", "html", *MODELS, *TABLES))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,8 @@ from blocksim.cli.built import Given
 from blocksim.cli.filming import picture_of_leaning
 from blocksim.cli.options import named_options, refuse
 from blocksim.cli.output import progress, save_picture, say
-from blocksim.cli.question import question
-from blocksim.cli.subject import anything_asked, is_structure, problem_asked
+from blocksim.cli.question import arch_of, is_thick
+from blocksim.cli.subject import anything_asked
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import write_whole
@@ -36,11 +37,12 @@ def write_still(
     Where gravity leans out of the plane of an arch, statics in the plane say nothing: it is
     put into the engine that sees it, and drawn in perspective.
     """
-    built = is_structure(scene) or loading.given
-    asked = None if built else question(scene, given)
+    leaning = given.lean is not None
+    bare = scene is None and not (loading.given or leaning or is_thick(given))
+    problem = None if bare else anything_asked(scene, given, loading, thick=not leaning)
+    leaning = problem is not None and not (problem.in_space or problem.is_planar)
     solid = "another kind: a page to turn around (.html) is of blocks in space"
-    if asked is None or (not asked.lean and asked.has_thickness):
-        problem = anything_asked(scene, given, loading, thick=True)
+    if problem is not None and not leaning:
         if problem.in_space:
             refuse({"must_rest": must_rest})
             perspective = "a .png, .svg or .pdf: it is drawn in perspective; or .html, to turn "
@@ -57,18 +59,18 @@ def write_still(
     require(kind != "html", "--out", str(out), solid)
     require(method is None, "--method", method, "left out: the picture is of no motion")
     require(not must_rest, "--must-rest", must_rest, "left out: nothing is built in its plane")
-    flat = "a .png, .svg or .pdf: it leans" if asked.lean else (
-        "a .png, .svg or .pdf where no thickness is given"
-    )  # fmt: skip
-    require(kind != "dxf", "--out", str(out), flat)
-    if asked.lean:
-        picture_of_leaning(out, kind, problem_asked(scene, given, loading), height)
+    why = ": it leans" if leaning else " where no thickness is given"
+    require(kind != "dxf", "--out", str(out), f"a .png, .svg or .pdf{why}")
+    if problem is not None:
+        picture_of_leaning(out, kind, problem, height)
         return
     from blocksim.view.archfigure import arch_figure, picture_of_theory
 
     with named_options():
-        shape = asked.arch(1.0)
-        arch = shape.half_angle, asked.mu, shape.weight
+        maker = arch_of(replace(given, eta=1.0))
+        shape = maker.shape
+        assert shape is not None  # noqa: S101 - by its half-angle, or span and rise
+        arch = shape.half_angle, maker.known_friction, shape.weight
         critical = least_thickness(*arch)
         if critical.eta is None:
             raise InputError("eta", MISSING, "given where no thickness stands")

@@ -34,7 +34,7 @@ from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
 
 FALL = 20.0
-"""Time recorded of a scenario at most: it ends when the rubble lies still [sqrt(r/g)]."""
+"""Time recorded of a structure at most: it ends when the rubble lies still [sqrt(r/g)]."""
 HEIGHT = 720
 HEIGHTS = (180, 2160)
 STILL = 1e-3
@@ -61,7 +61,7 @@ TIME = option(
 )
 PIXELS = option("In pixels: of a frame (720 if left out; frames are 16:9) or a .png picture.")
 ENGINE = option(
-    f"Simulates a scenario: auto (if left out), {', '.join(NAMES)}{OWN}.", name="--method"
+    f"Simulates a structure: auto (if left out), {', '.join(NAMES)}{OWN}.", name="--method"
 )
 
 
@@ -88,7 +88,7 @@ def recordings(
     *,
     must_rest: bool = False,
 ) -> list[Recording[Any]]:
-    """Read recordings, or simulate the scenario, in the plane or in space.
+    """Read recordings, or simulate the structure, in the plane or in space.
 
     Where it is asked whether it must rest, blocks are let go along the motion that is found.
     """

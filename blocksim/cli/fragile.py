@@ -54,8 +54,7 @@ def fragility(
     as_json: bool = JSON,
 ) -> None:
     """Find which share of records of the ground brings it down, by their amplitude."""
-    problem = problem_asked(scene, given, loading, thick=True, record=record,
-                            amplitudes=amplitudes)  # fmt: skip
+    problem = problem_asked(scene, given, loading, record=record, amplitudes=amplitudes)
     for path in out or ():
         picture_kind(path, CURVES)
     names = [str(path) for path in record or ()]

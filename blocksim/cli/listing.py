@@ -1,9 +1,8 @@
-"""The commands that list what is there: scenarios and kinds."""
+"""The commands that list what is there: structures, vehicles and kinds."""
 
 from __future__ import annotations
 
-import math
-
+from blocksim.blocks.entries import ExpectEntry
 from blocksim.blocks.vehicles import shipped_vehicles, vehicle_of
 from blocksim.cli.arguments import argument
 from blocksim.cli.output import say
@@ -11,33 +10,19 @@ from blocksim.cli.terminal import Table, show
 from blocksim.common.errors import InputError, perhaps
 from blocksim.common.fields import fields_of
 from blocksim.kinds import KINDS
-from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.studies.validate import structures
 
-NUMBERS = {"alpha", "mu", "n", "eta", "blocks"}
+NUMBERS = {"mu", "blocks"}
 """Columns of numbers."""
 
 
 def list_scenarios() -> None:
-    """List the scenarios, structures and vehicles that come with blocksim."""
-    table = Table("name", "alpha", "mu", "n", "eta", "title", "source", right=NUMBERS)
-    for name in shipped():
-        each = load_scenario(name)
-        arch = each.arch(1.0)
-        eta = f"{each.maker.eta:g}" if each.has_thickness else "-"
-        numbers = f"{math.degrees(arch.half_angle):g}", f"{each.mu:.4g}", str(arch.voussoirs)
-        table.add_row(name, *numbers, eta, each.title, each.source)
-    show(table)
-    say("")
+    """List the structures and vehicles that come with blocksim."""
     built = Table("structure", "blocks", "mu", "known", "title", "source", right=NUMBERS)
     for known in structures(quick=False):
-        told = [
-            f"{one.verdict}" if one.verdict else f"--over {one.over} {one.value:.6g}"
-            for one in known.expect
-        ]
-        problem = known.problem
+        problem, told = known.problem, ", ".join(map(_expected, known.expect))
         size = str(len(problem.assembly.blocks)), f"{problem.mu:.4g}"
-        built.add_row(known.name, *size, ", ".join(told), problem.title, problem.source)
+        built.add_row(known.name, *size, told, problem.title, problem.source)
     show(built)
     say("")
     vehicles = Table("vehicle", "axles", "title", "source")
@@ -46,6 +31,14 @@ def list_scenarios() -> None:
         axles = ", ".join(f"{weight / 1e3:g} kN at {x:g} m" for x, weight in each.axles)
         vehicles.add_row(name, axles, each.title, each.source)
     show(vehicles)
+
+
+def _expected(known: ExpectEntry) -> str:
+    """Say what the source of a structure says of it."""
+    if known.modes is not None:
+        least = "none stands" if known.eta is None else f"eta {known.eta:.6g}"
+        return f"{'/'.join(known.modes)} {least}"
+    return known.verdict or f"--over {known.over} {known.value:.6g}"
 
 
 def list_kinds(

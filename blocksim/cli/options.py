@@ -18,8 +18,8 @@ from blocksim.simulation.simulated import SETTINGS
 from blocksim.simulation.verdict import Verdict
 
 SCENE = argument(
-    "Scenario of an arch, a .toml file or a shipped name; or a structure: a file, "
-    ".json or .toml, or a kind: its name (blocksim kinds), or module:CLASS of your own."
+    "A structure: a file, .json or .toml, or a shipped name (blocksim scenarios); or a kind: "
+    "its name (blocksim kinds), or module:CLASS of your own."
 )
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
 OWN = ", or an engine of your own: its name, or module:ENGINE"

@@ -11,6 +11,7 @@ from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.road import (
     fill_density,
+    remade,
     road_of,
     takes_fill,
     with_dispersal,
@@ -25,7 +26,7 @@ from blocksim.cli.built import Given
 from blocksim.cli.options import named_options, option_of, refuse, require_given
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
-from blocksim.kinds.circular import LEAST_DENSITY
+from blocksim.kinds.circular import LEAST_DENSITY, CircularArch
 from blocksim.limit.crushing import require_sizes
 
 IN_SPACE = {"parameters", "mu", "friction_angle", "unit_weight", "tolerance", "unit", "layer",
@@ -143,6 +144,10 @@ def _said(value: object) -> str:
 
 def under_road(problem: Problem, loading: Loading) -> Problem:
     """Put fill and loads on a structure; live loads act as they are, with a factor of 1."""
+    if isinstance(problem.maker, CircularArch) and problem.maker.in_radii:
+        # They are borne by supports that are drawn.
+        maker = problem.maker.between_supports()
+        problem = replace(remade(problem, maker), title=problem.title or maker.name)
     blocks = problem.assembly.blocks
     volume = sum(abs(signed_area(part)) * b.depth for b in blocks for part in b.polygons)
     density = sum(block.mass for block in blocks) * STANDARD_GRAVITY / volume

@@ -19,33 +19,10 @@ from blocksim.cli.options import (
 from blocksim.cli.road import loaded
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
-from blocksim.common.files import read_file, toml_of
 from blocksim.kinds import KINDS, own_kind
 from blocksim.kinds.changes import edited
-from blocksim.kinds.files import is_drawing, load_structure, shipped_structures, structure_of
+from blocksim.kinds.files import is_drawing, load_structure, structure_of
 from blocksim.reading.asked import ROLES, Reading
-
-LARGEST_PEEK = 1 << 20
-"""Bytes of a TOML file that are looked at to tell a structure from a scenario."""
-
-
-def is_structure(scene: str | None) -> bool:
-    """Tell a structure from a scenario of an arch: by its name, or by what is in the file."""
-    if scene in KINDS or scene in shipped_structures():
-        return True
-    if scene is None:
-        return False
-    if _is_place(scene):
-        return True
-    if is_drawing(scene) or scene.lower().endswith((".json", ".gltf")):
-        return True
-    if not scene.endswith(".toml"):
-        return False
-    try:
-        table = toml_of(read_file(scene, "structure", "a file", LARGEST_PEEK))
-    except ValueError:
-        return False  # the reader of scenarios says what is wrong with it
-    return "blocks" in table or "kind" in table
 
 
 def structure(scene: str, given: Given, loading: Loading) -> Problem[Any]:
@@ -65,8 +42,7 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem[Any]:
         if scene in KINDS or _is_place(scene):
             own = () if scene in KINDS else (own_kind(scene),)
             name = own[0].name if own else scene
-            table = edited({"kind": name}, changes, density, *own,
-                           friction=given.friction, depth=given.depth)  # fmt: skip
+            table = edited({"kind": name}, changes, density, *own, depth=given.depth)
             built = structure_of(table, *own)
         else:
             if is_drawing(scene):
@@ -75,7 +51,6 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem[Any]:
                 scene,
                 changes,
                 density,
-                friction=given.friction,
                 tolerance=given.tolerance,
                 depth=given.depth,
                 reading=reading_of(given.unit, given.layer, given.snap),

@@ -20,13 +20,13 @@ from blocksim.report.structurewords import found_of, question_of, summary_of_str
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
 from blocksim.studies.chart import Point, cases, measure, on_front
 from blocksim.studies.questions import StructureRow
-from blocksim.studies.validate import scenarios, structures, unasked
+from blocksim.studies.validate import structures, unasked
 from blocksim.studies.validate import validate as run_validation
 
 
 def validate(
     quick: bool = option(
-        "Scenarios marked quick, or all of them.", default=False, name="--quick/--full"
+        "Structures marked quick, or all of them.", default=False, name="--quick/--full"
     ),
     out: Path = option("Folder for the results.", default=Path("out/validate"), folder=True),
     methods: str | None = option(
@@ -45,10 +45,10 @@ def validate(
     for each in engines or ():
         engine_named(each, "--methods")
     make_folder(out)
-    chosen = scenarios(quick=quick)
-    left_out = unasked(chosen, engines)
-    built = structures(quick=quick)
-    built_left_out = unasked(built, engines)
+    every = structures(quick=quick)
+    chosen = [known for known in every if known.expect[0].modes]
+    built = [known for known in every if not known.expect[0].modes]
+    left_out, built_left_out = unasked(chosen, engines), unasked(built, engines)
     with progress() as report:
         found = run_validation([*chosen, *built], engines, workers=workers, progress=report)
     rows = [row for row in found if isinstance(row, Validation)]
@@ -171,4 +171,4 @@ def _answer(row: Validation | None) -> str:
     if row is None:
         return "-"
     error = "" if row.error is None else f" {signed(100 * row.error, 3)}%"
-    return f"{row.mode_observed or row.verdict or '-'}{error}{' !' if row.miss else ''}"
+    return f"{row.mode_observed or '-'}{error}{' !' if row.miss else ''}"

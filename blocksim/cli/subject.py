@@ -10,8 +10,8 @@ from typing import Any
 from blocksim.blocks.problem import Problem
 from blocksim.cli.acting import Loading
 from blocksim.cli.built import Given
-from blocksim.cli.options import named_options, require_given
-from blocksim.cli.question import question
+from blocksim.cli.options import require_given
+from blocksim.cli.question import arch_asked
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 
@@ -32,28 +32,9 @@ def is_many(scene: str) -> bool:
         return False
 
 
-def is_structure(scene: str | None) -> bool:
-    """Tell a structure from an arch by its options, or a scenario of one."""
-    if scene is None:
-        return False
-    # An arch by its options is answered sooner than readers of files are loaded.
-    from blocksim.cli.structures import is_structure
-
-    return is_structure(scene)
-
-
-def problem_asked(
-    scene: str | None,
-    given: Given,
-    loading: Loading,
-    *,
-    thick: bool = False,
-    **needed: object,
-) -> Problem:
+def problem_asked(scene: str | None, given: Given, loading: Loading, **needed: Any) -> Problem:
     """Return what is asked about in the plane; see `anything_asked`."""
-    found = anything_asked(
-        scene, given, loading, spatial=False, thick=thick, sought=False, **needed
-    )
+    found = anything_asked(scene, given, loading, thick=True, **needed)
     if found.in_space:
         raise InputError("blocks", "three coordinates", IN_PLANE, where=scene)
     return found
@@ -71,17 +52,22 @@ def anything_asked(
 ) -> Problem[Any]:
     """Return what is asked about, in the plane or in space, and what the options put on it.
 
-    `scene`, `given`, `thick`, `needed`: As of `question`.
+    `scene`: A file, a shipped name or a kind; None for the circular arch by its options.
+    `given`, `thick`, `sought`, `needed`: As of `arch_asked`.
     `spatial`: Whether blocks of the plane are asked as prisms.
-    `sought`: Whether the thickness of an arch is what is sought.
     """
-    if scene is not None and is_structure(scene):
+    if scene is None:
+        found = arch_asked(given, thick=thick, sought=sought, **needed)
+        if loading.given:
+            from blocksim.cli.road import loaded
+
+            found = loaded(found, Given(), loading)
+    else:
+        # An arch by its options is answered sooner than readers of files are loaded.
         from blocksim.cli.structures import structure
 
         require_given(**needed)
         found = structure(scene, given, loading)
-    else:
-        found = _arch(scene, given, loading, thick=thick, sought=sought, **needed)
     if found.in_space:
         return found
     if not spatial:
@@ -91,26 +77,3 @@ def anything_asked(
     from blocksim.blocks.space.extruded import extruded
 
     return replace(extruded(found), azimuth=math.radians(loading.azimuth or 0.0))
-
-
-def _arch(
-    scene: str | None,
-    given: Given,
-    loading: Loading,
-    *,
-    thick: bool,
-    sought: bool,
-    **needed: object,
-) -> Problem:
-    """Return the circular arch that is asked about, by its options or a scenario."""
-    asked = question(scene, given, thick=thick, **needed)
-    with named_options():
-        if sought and not asked.has_thickness:
-            asked = replace(asked, given={**asked.given, "eta": 1.0})
-        # Fill and loads on the road are borne by supports that are drawn.
-        problem = asked.problem(supports=bool(loading.on_road))
-    if not loading.given:
-        return problem
-    from blocksim.cli.road import loaded
-
-    return loaded(problem, Given(), loading)

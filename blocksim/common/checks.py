@@ -92,12 +92,20 @@ class Range:
             taken = {"type": "no-info", "function": infinite}
             endless = {"type": "function-after", "function": taken, "schema": text}
             number = {"type": "union", "choices": [number, endless]}
+            # TOML has infinity as a number.
+            said = {"type": "no-info", "function": endless_text}
+            number = {"type": "function-before", "function": said, "schema": number}
         return {
             "type": "custom-error",
             "schema": number,
             "custom_error_type": "range",
             "custom_error_message": self.words,
         }
+
+
+def endless_text(written: object) -> object:
+    """Say infinity as the text that files of JSON have."""
+    return "inf" if written == math.inf else written
 
 
 def infinite(written: object) -> object:

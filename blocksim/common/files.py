@@ -210,6 +210,24 @@ _DEEP_KEY = re.compile(
 )
 
 
+LARGEST_TABLE = 64 * 1024
+"""Bytes of a small TOML file; a larger one is not read."""
+
+
+def read_toml(
+    path: AnyPath, what: str, allowed: str, largest: int = LARGEST_TABLE
+) -> dict[str, Any]:
+    """Read a small TOML file.
+
+    `what`, `allowed`: What the file is and has to be, for what is said of one that is not.
+    """
+    text = read_file(path, what, allowed, largest)
+    try:
+        return toml_of(text)
+    except ValueError as error:
+        raise InputError("file", str(error), "valid TOML", where=str(path)) from None
+
+
 def toml_of(text: bytes) -> dict[str, Any]:
     """Return what a TOML file says.
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from types import MappingProxyType
 from typing import Any, ClassVar, TypeVar, cast
 
 from pydantic import TypeAdapter, ValidationError
@@ -43,18 +41,16 @@ def as_said(
     schema: type[Said],
     table: object,
     where: str | None = None,
-    renamed: Mapping[str, str] = MappingProxyType({}),
 ) -> Said:
     """Check what a table of a file says.
 
     `schema`: A dataclass.
     `where`: The file.
-    `renamed`: Keys that were called otherwise, and their names now.
     """
     try:
         return _adapter(schema).validate_python(table)
     except ValidationError as error:
-        raise _first_of(error, table, where, renamed) from None
+        raise _first_of(error, table, where) from None
 
 
 @cache
@@ -62,9 +58,7 @@ def _adapter(schema: type[Said]) -> TypeAdapter[Said]:
     return TypeAdapter(schema)
 
 
-def _first_of(
-    error: ValidationError, table: object, where: str | None, renamed: Mapping[str, str]
-) -> InputError:
+def _first_of(error: ValidationError, table: object, where: str | None) -> InputError:
     """Turn the first of pydantic's complaints into one line."""
     errors = error.errors(include_url=False, include_context=False)
     # A misspelt key shows twice, as unknown and as missing: the first says more.
@@ -73,8 +67,7 @@ def _first_of(
     missing = first["type"] in {"missing", "missing_argument"}
     field = _place(first["loc"], table, missing=missing)
     if first["type"] == UNKNOWN:
-        now = renamed.get(str(first["loc"][-1]))
-        allowed = f"named {now}" if now else "left out: there is no such key"
+        allowed = "left out: there is no such key"
         return InputError(field, first["input"], allowed, where=where)
     if missing:
         return InputError(field, MISSING, "given", where=where)

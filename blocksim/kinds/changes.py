@@ -44,10 +44,11 @@ def edited(
 
 
 def changed(table: Mapping[str, Any], changes: Mapping[str, object]) -> dict[str, Any]:
-    """Return the table of a kind with other parameters."""
-    table = {**table}
+    """Return what a file says with another friction, or the table of a kind with others."""
+    kind = KINDS.get(str(table.get("kind")))
+    table = {**table} if kind is None else kind.beside(table, changes)
     for name, value in changes.items():
-        there = table.get("kind") is not None
+        there = "kind" in table or name == "friction"
         require(there, name, value, "left out: the file has blocks, not a kind")
         here, _, rest = name.partition(".")
         inside = table.get(here)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 import numpy as np
 
 from blocksim.arch.circular import Arch, Weight
-from blocksim.arch.dimensions import LINES, Dimensions, Line
+from blocksim.arch.dimensions import LINES, Dimensions, Line, require_measured
 from blocksim.arch.limit import least_thickness
 from blocksim.blocks.assembly import Assembly
 from blocksim.blocks.made import Built
@@ -25,6 +26,7 @@ from blocksim.common.checks import (
     RATIO,
     VOUSSOIRS,
     Range,
+    infinite,
     require,
 )
 from blocksim.common.errors import MISSING, InputError
@@ -41,6 +43,10 @@ WEIGHTS: dict[str, Weight] = {"centreline": "centreline", "curved": "sector"}
 """What an arch calls the weights of a kind that it has, too."""
 LEAST_DENSITY = 100.0
 """Weight per volume below which weights are taken for ratios, not for newtons [N/m^3]."""
+THICK = {"thickness", "eta", "ratio"}
+LINE = {"span", "rise", "at"}
+ANGLES = {"half_angle", "half_angle_deg", "left_deg", "right_deg"}
+"""Parameters each of which says how thick it is, which line was measured, or where it ends."""
 FOLLOW = {
     ("span", "rise", "at"): ("radius", "half_angle", "half_angle_deg"),
     ("half_angle_deg",): ("half_angle",),
@@ -138,6 +144,10 @@ class CircularArch(CurvedArch):
         if self.weight == "sector":
             # As an arch calls it.
             object.__setattr__(self, "weight", "curved")
+        fields_of(CircularArch)["weight"].require("weight", self.weight)
+        if VOUSSOIRS.has(self.voussoirs):
+            # 40.0 of a file is 40.
+            object.__setattr__(self, "voussoirs", int(self.voussoirs))
         for name, beside in (("span", self.rise), ("rise", self.span)):
             alone = beside is not None and getattr(self, name) is None
             require(not alone, name, MISSING, "given")
@@ -158,6 +168,8 @@ class CircularArch(CurvedArch):
         if self.ratio is not None:
             self._derive("eta", self.ratio * self._least(self.ratio))
         if line is not None:
+            own = {"thickness": self.thickness} if self.eta is None else {}
+            require_measured(vars(line) | own)
             size = Dimensions(**vars(line), thickness=self.thickness)
             radius = size.radius if self.eta is None else line.mean_radius(self.eta)
             self._derive("radius", radius)
@@ -198,6 +210,23 @@ class CircularArch(CurvedArch):
         same = given in (usual, value)
         require(same, name, given, f"left out: from the others it is {value:.6g}")
         object.__setattr__(self, name, value)
+
+    @classmethod
+    def beside(cls, table: Mapping[str, Any], changes: Mapping[str, object]) -> dict[str, Any]:
+        """Return what a table still says: of how thick it is, and how wide, one thing."""
+        left, more = set[str](), dict[str, Any]()
+        if THICK & changes.keys():
+            left |= THICK
+        if LINE & changes.keys():
+            left |= {*ANGLES, "radius"}
+        elif "span" in table and ANGLES & changes.keys():
+            # It is no longer the line that was measured; the centreline stays.
+            known: dict[str, Any] = {
+                name: infinite(table[name])
+                for name in table.keys() & {*cls.__dataclass_fields__}
+            }
+            left, more = left | LINE, {"radius": cls(**known).radius}
+        return {**{name: table[name] for name in table if name not in left}, **more}
 
     def but(self, **changes: Any) -> Self:
         """Return the same with other values; the line that was measured stays where it is."""

@@ -28,6 +28,7 @@ from blocksim.common.errors import InputError, perhaps
 from blocksim.common.files import AnyPath, json_of, read_file, shipped_files, toml_of
 from blocksim.common.tables import as_said
 from blocksim.kinds import KINDS
+from blocksim.kinds.archfile import as_structure
 from blocksim.kinds.changes import edited
 from blocksim.reading.asked import Reading
 from blocksim.reading.compas import is_compas, read_compas
@@ -127,7 +128,7 @@ def named_file(
     ending = Path(path).suffix.lower()
     if ending not in WRITTEN and ending not in OTHERS:
         known = shipped_structures()
-        near = perhaps(path, known)
+        near = perhaps(path, [*known, *KINDS])
         path = str(known.get(path, path))
         ending = Path(path).suffix
     endings = ".json, .toml, .dxf, .svg, .obj, .stl, .ply or .glb"
@@ -176,7 +177,7 @@ def require_undrawn(reading: Reading) -> None:
 def written(text: bytes, language: str) -> object:
     """Return what a text says, a scene or an assembly of compas as a structure file would."""
     if language == "TOML":
-        return toml_of(text)
+        return as_structure(toml_of(text))
     data: object = json_of(text, _once)
     if is_scene(data):
         return read_scene(cast("dict[str, Any]", data))

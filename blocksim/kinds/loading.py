@@ -6,7 +6,6 @@ import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any, cast
 
 from blocksim.arch.circular import Arch
@@ -17,17 +16,10 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.record import to_record
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
-from blocksim.common.files import AnyPath, read_file, toml_of
+from blocksim.common.files import AnyPath
 from blocksim.kinds import KINDS
 from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.files import (
-    LARGEST_FILES,
-    around_said,
-    load_structure,
-    named_file,
-    structure_of,
-)
-from blocksim.kinds.scenarios import load_scenario, shipped
+from blocksim.kinds.files import around_said, load_structure, named_file, structure_of
 from blocksim.simulation.recording import FORMAT, Recording, read_recording
 
 
@@ -37,8 +29,8 @@ def load(name: AnyPath, *, friction: float | None = None) -> Problem[Any]:
     Parameters
     ----------
     name : str or path
-        A structure file, a drawing, an assembly of compas, a scenario of an arch, the name of
-        one that is shipped, or that of a kind.
+        A structure file, a drawing, an assembly of compas, the name of one that is shipped, or
+        that of a kind.
     friction : float, optional
         Friction coefficient where the name says none, as of drawings and kinds; inf allowed.
 
@@ -57,20 +49,7 @@ def load(name: AnyPath, *, friction: float | None = None) -> Problem[Any]:
     said = os.fspath(name)
     if said in KINDS:
         return KINDS[said](friction=friction).problem()
-    if said in shipped() or _is_scenario(said):
-        return load_scenario(said).problem()
     return load_structure(name, friction=friction)
-
-
-def _is_scenario(path: str) -> bool:
-    """Tell a scenario of an arch from a structure file, by what is in it."""
-    if not path.endswith(".toml") or not Path(path).is_file():
-        return False
-    try:
-        table = toml_of(read_file(path, "structure", "a file", LARGEST_FILES[".toml"]))
-    except ValueError:
-        return False
-    return "arch" in table and "kind" not in table and "blocks" not in table
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -94,9 +73,9 @@ def load_known(name: str) -> Known:
         around = around_said(table)
         for at, each in enumerate(around.expect):
             valued = each.over is not None and each.value is not None
-            field = f"expect[{at}]"
-            judged = each.verdict is not None
-            require(valued != judged, field, each.over, "either over and value, or verdict")
+            asked = valued, each.verdict is not None, each.modes is not None
+            allowed = "over and value, verdict or modes"
+            require(sum(asked) == 1, f"expect[{at}]", each.over, allowed)
         return Known(name=name, problem=problem, expect=around.expect, quick=around.quick)
 
 

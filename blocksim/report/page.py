@@ -134,9 +134,7 @@ def _case(number: int, rows: Sequence[Validation]) -> dict[str, Any]:
 def _result(row: Validation, anchor: str) -> dict[str, Any]:
     """Return a row as the page shows it."""
     low, high = row.eta_low, row.eta_high
-    if row.verdict is not None:
-        bracket = "-"
-    elif high is None:
+    if high is None:
         bracket = "none up to 2"
     elif low is None:
         bracket = f"below {ratio(high)}"
@@ -153,7 +151,7 @@ def _result(row: Validation, anchor: str) -> dict[str, Any]:
         "row": row,
         "anchor": anchor,
         "thickest": thickest,
-        "found": bracket if row.verdict else "none" if nothing else ratio(fmean(ends)),
+        "found": "none" if nothing else ratio(fmean(ends)),
         "bracket": bracket,
         "error": "-" if row.error is None else _percent(row.error, "+.3f"),
         **shown,

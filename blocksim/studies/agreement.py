@@ -45,19 +45,15 @@ class Validation:
     `modes_theory`: The same by theory: all that coincide there, so that none of them is wrong.
     `eta_low`, `eta_high`: The bracket.
     `error`: Centre of the bracket over `eta_limit`, less 1.
-    `mode_observed`: Of the mechanism it starts with, at the bracket's lower end; where the
-        claim is a verdict, of the arch as it is.
+    `mode_observed`: Of the mechanism it starts with, at the bracket's lower end.
     `mode_in_motion`: In the moving run 1 % below the bracket, where more than the weakest mode
         may move.
     `below`, `above`: 1 % below and above the bracket, by onset test and moving run; None where
         not tried.
-    `verdict_expected`, `verdict`: Of the arch as the scenario has it, where its claim is that
-        and not the bracket.
     `miss`: What disagrees; empty where nothing does.
     `note`: Why, or what to keep in mind.
     `title`, `source`: Of the scenario.
-    `recording`: The moving run 1 % below the bracket; None where there was none, or the claim
-        is a verdict.
+    `recording`: The moving run 1 % below the bracket; None where there was none.
     """
 
     scenario: str
@@ -78,8 +74,6 @@ class Validation:
     mode_in_motion: Mode | None = None
     below: Verdict | None = None
     above: Verdict | None = None
-    verdict_expected: Verdict | None = None
-    verdict: Verdict | None = None
     miss: str = ""
     note: str = ""
     wall_s: float = 0.0

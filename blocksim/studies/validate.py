@@ -1,19 +1,18 @@
 """What comes with blocksim and has a known answer, held against it: arches and structures.
 
-Arches are asked by simulation, against limit analysis and theory; structures by limit analysis
-and by engines, against their sources.
+Arches whose modes are known are asked by simulation, against limit analysis and theory; all
+else by limit analysis and by engines, against its source.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from blocksim.arch import limit
 from blocksim.arch.answers import ArchBracket
-from blocksim.arch.circular import ETA_MAX
+from blocksim.arch.circular import ETA_MAX, Arch
 from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode, observed_mode
 from blocksim.ask.bracket import bracket
@@ -25,14 +24,11 @@ from blocksim.engines import ENGINES, NAMES, engine_named, get_engine
 from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import shipped_structures
 from blocksim.kinds.loading import Known, load_known
-from blocksim.kinds.scenario import Scenario
-from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.simulation.observation import observe
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import Unasked, Validation, agree, answered
 from blocksim.studies.questions import StructureRow, answer
 
-Case = Scenario | Known
 Row = Validation | StructureRow
 ERROR_BOUND = 0.002
 """A bracket whose centre is farther than this from `limit` is a miss."""
@@ -42,48 +38,37 @@ LIMIT = "limit"
 
 
 class Question(NamedTuple):
-    """One question about a case, put to one method; of an arch it is what its scenario says."""
+    """One question about a structure, put to one method."""
 
-    case: Case
-    expected: ExpectEntry | None
+    case: Known
+    expected: ExpectEntry
     method: str
 
     def answer(self) -> Row:
         """Ask it, and compare."""
-        if isinstance(self.case, Known):
-            assert self.expected is not None  # noqa: S101 - what a structure is asked
-            return answer(self.case, self.expected, self.method)
-        return validate_one(self.case, self.method)
+        if self.expected.modes is not None:
+            return validate_one(self.case, self.expected, self.method)
+        return answer(self.case, self.expected, self.method)
 
     @property
     def refused(self) -> str:
         """Why the method is not asked; nothing where it is."""
-        case, engine = self.case, None if self.method == LIMIT else engine_named(self.method)
-        if engine and engine.missing:
-            return f"not here: {engine.missing}"
-        if isinstance(case, Scenario):
-            if not case.lean or engine is None or engine.is_spatial:
-                return ""
-            able = " or ".join(each for each in NAMES if ENGINES[each].is_spatial)
-            return f"gravity leans out of the plane: {able} sees that"
-        if engine is None and case.problem.shaking is None:
+        problem, engine = self.case.problem, None
+        if self.method != LIMIT:
+            engine = engine_named(self.method)
+            if engine.missing:
+                return f"not here: {engine.missing}"
+        if self.expected.modes is not None or (engine is None and problem.shaking is None):
             return ""
-        spreads = self.expected is not None and self.expected.over == "spread"
-        if engine and spreads and not engine.moves_supports:
+        if engine and self.expected.over == "spread" and not engine.moves_supports:
             return "it moves no supports"
-        if engine and len(case.problem.assembly.blocks) > engine.most_blocks:
+        if engine and len(problem.assembly.blocks) > engine.most_blocks:
             return f"more than {engine.most_blocks} blocks"
         try:
-            choose(self.method, problem=case.problem)
+            choose(self.method, problem=problem)
         except InputError as error:
             return error.allowed
         return ""
-
-
-def scenarios(*, quick: bool) -> list[Scenario]:
-    """Return the shipped scenarios, or those marked quick."""
-    every = [load_scenario(name) for name in shipped()]
-    return [scenario for scenario in every if scenario.quick or not quick]
 
 
 def structures(*, quick: bool) -> list[Known]:
@@ -92,23 +77,23 @@ def structures(*, quick: bool) -> list[Known]:
     return [known for known in every if known.quick or not quick]
 
 
-def usual(case: Case) -> tuple[str, ...]:
-    """Return the engines that are asked about a case where none is named."""
-    part = "structures" if isinstance(case, Known) else "arches"
+def usual(case: Known, expected: ExpectEntry) -> tuple[str, ...]:
+    """Return the methods that are asked about a structure where none is named."""
+    leans = not (case.problem.in_space or case.problem.is_planar)
+    part = "structures" if expected.modes is None and not leans else "arches"
     return tuple(name for name in NAMES if part in ENGINES[name].validates)
 
 
-def _questions(case: Case, engines: Iterable[str] | None) -> Iterator[Question]:
-    """Go through all that is asked of a case, whether a method is asked it or not."""
-    names = usual(case) if engines is None else tuple(dict.fromkeys(engines))
-    if isinstance(case, Scenario):
-        yield from (Question(case, None, name) for name in names)
-        return
+def _questions(case: Known, engines: Iterable[str] | None) -> Iterator[Question]:
+    """Go through all that is asked of a structure, whether a method is asked it or not."""
     for expected in case.expect:
-        yield from (Question(case, expected, name) for name in (LIMIT, *names))
+        names = usual(case, expected) if engines is None else tuple(dict.fromkeys(engines))
+        if expected.modes is None and (case.problem.in_space or case.problem.is_planar):
+            names = (LIMIT, *names)
+        yield from (Question(case, expected, name) for name in names)
 
 
-def unasked(chosen: Sequence[Case], engines: Iterable[str] | None = None) -> list[Unasked]:
+def unasked(chosen: Sequence[Known], engines: Iterable[str] | None = None) -> list[Unasked]:
     """Tell what `validate` does not ask, and why; arguments as there."""
     found: dict[str, dict[str, dict[str, None]]] = {}
     names = None if engines is None else tuple(engines)
@@ -126,7 +111,7 @@ def unasked(chosen: Sequence[Case], engines: Iterable[str] | None = None) -> lis
 
 
 def validate(
-    chosen: Sequence[Case],
+    chosen: Sequence[Known],
     engines: Iterable[str] | None = None,
     *,
     workers: int = 2,
@@ -151,16 +136,19 @@ def validate(
     return answered(Question.answer, jobs, workers, progress)
 
 
-def validate_one(scenario: Scenario, engine: str, tol: float | None = None) -> Validation:
-    """Ask one scenario's question of one engine and compare.
+def validate_one(
+    known: Known, expected: ExpectEntry, engine: str, tol: float | None = None
+) -> Validation:
+    """Ask one engine how thin an arch can be and how it falls, and compare.
 
     `tol`: Relative width of the bracket; by default what the engine says (`validated_to`).
     """
-    if scenario.expected_verdict is not None and scenario.has_thickness:
-        return _judged(scenario, engine)
     started = time.perf_counter()
+    maker = known.problem.maker
+    assert isinstance(maker, CircularArch)  # noqa: S101 - of which modes are known
+    thick = maker.but(eta=1.0)
     asked = bracket(
-        scenario.of(eta=1.0),
+        thick,
         over="thickness",
         method=engine,
         tol=tol or engine_named(engine).validated_to,
@@ -172,24 +160,30 @@ def validate_one(scenario: Scenario, engine: str, tol: float | None = None) -> V
     in_motion = below = above = recording = None
     if found.eta_low is not None:
         under = found.eta_low if found.centre is None else found.centre * (1 - ASIDE)
-        arch = scenario.arch(under)
-        seen = observe(CircularArch.of(arch, scenario.mu).problem(), engine)
-        in_motion, below = observed_mode(seen.joints_in_motion, arch), seen.verdict
+        thin = maker.but(eta=under)
+        seen = observe(thin.problem(), engine)
+        in_motion, below = observed_mode(seen.joints_in_motion, _shape(thin)), seen.verdict
         recording = seen.motion.recording if seen.motion else None
     # Thicker than eta = 2 there is no arch to try.
     if found.centre is not None and found.centre * (1 + ASIDE) <= ETA_MAX:
-        over = found.centre * (1 + ASIDE)
-        above = observe(
-            CircularArch.of(scenario.arch(over), scenario.mu).problem(), engine
-        ).verdict
+        above = observe(maker.but(eta=found.centre * (1 + ASIDE)).problem(), engine).verdict
     error = None
     # Where the limit is the thickest arch there is, nothing above it can be tried.
     middle = found.centre or (None if asked.undecided else found.eta_low)
     if middle is not None and found.eta_limit:
         error = middle / found.eta_limit - 1
-    miss = "; ".join(_misses(found, error, below, above))
-    return replace(
-        _asked(scenario, engine),
+    shape, problem = _shape(thick), known.problem
+    return Validation(
+        scenario=known.name,
+        engine=engine,
+        half_angle=shape.half_angle,
+        mu=problem.mu,
+        voussoirs=shape.voussoirs,
+        weight=shape.weight,
+        modes_published=tuple(map(Mode, expected.modes or ())),
+        eta_published=expected.eta,
+        title=problem.title,
+        source=problem.source,
         eta_limit=found.eta_limit,
         mode_limit=found.mode_limit,
         eta_low=found.eta_low,
@@ -199,46 +193,17 @@ def validate_one(scenario: Scenario, engine: str, tol: float | None = None) -> V
         mode_in_motion=in_motion,
         below=below,
         above=above,
-        miss=miss,
-        note=_note(scenario, found, engine, in_motion),
+        miss="; ".join(_misses(found, error, below, above)),
+        note=_note(maker, found, engine, in_motion),
         wall_s=time.perf_counter() - started,
         modes_theory=found.modes_theory,
         recording=recording,
     )
 
 
-def _judged(scenario: Scenario, engine: str) -> Validation:
-    """Compare the verdict on an arch as it is with the one its scenario claims."""
-    started = time.perf_counter()
-    seen, arch = observe(scenario.problem(), engine), scenario.arch(scenario.maker.eta or 1.0)
-    right = seen.verdict is scenario.expected_verdict
-    return replace(
-        _asked(scenario, engine),
-        mode_observed=observed_mode(seen.joints, arch),
-        mode_in_motion=observed_mode(seen.joints_in_motion, arch),
-        verdict_expected=scenario.expected_verdict,
-        verdict=seen.verdict,
-        miss="" if right else f"{seen.verdict}, expected is {scenario.expected_verdict}",
-        note="" if right else seen.reason,
-        wall_s=time.perf_counter() - started,
-    )
-
-
-def _asked(scenario: Scenario, engine: str) -> Validation:
-    """Return the row of a scenario that is still to be answered."""
-    arch = scenario.arch(1.0)
-    return Validation(
-        scenario=scenario.name,
-        engine=engine,
-        half_angle=arch.half_angle,
-        mu=scenario.mu,
-        voussoirs=arch.voussoirs,
-        weight=arch.weight,
-        modes_published=scenario.expected_modes,
-        eta_published=scenario.expected_eta,
-        title=scenario.title,
-        source=scenario.source,
-    )
+def _shape(maker: CircularArch) -> Arch:
+    assert maker.shape is not None  # noqa: S101 - of a symmetric arch modes are known
+    return maker.shape
 
 
 def _misses(
@@ -270,21 +235,21 @@ def _misses(
     return misses
 
 
-def _note(scenario: Scenario, found: ArchBracket, engine: str, in_motion: Mode | None) -> str:
+def _note(maker: CircularArch, found: ArchBracket, engine: str, in_motion: Mode | None) -> str:
     """Say why modes differ, where that is known, and what else to keep in mind."""
     notes: list[str] = []
     if found.mode is not found.mode_limit:
         if agree(found.mode, found.mode_limit, found.modes_theory):
             notes.append("on a line of the map, where both modes coincide")
         elif found.eta_low is not None:
-            there = mechanism(scenario.arch(found.eta_low), scenario.mu).mode
+            there = mechanism(_shape(maker.but(eta=found.eta_low)), maker.known_friction).mode
             said = there or "unnamed"
             notes.append(f"at the bracket's lower end limit analysis says {said}")
     if in_motion and in_motion is not found.mode:
         notes.append(f"in motion, 1 % below, the mode is {in_motion}")
     most = get_engine(engine).most_friction
-    if scenario.mu > most:
-        arch = scenario.arch(1.0)
+    if maker.known_friction > most:
+        arch = _shape(maker)
         there = limit.least_thickness(arch.half_angle, most, arch.voussoirs, arch.weight)
         least = "nothing stands" if there.eta is None else f"{there.eta:.6g}, {there.mode}"
         notes.append(f"friction is {most:g} in the engine, where limit analysis says {least}")

@@ -22,12 +22,11 @@ from blocksim.common.checks import (
 )
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.fields import Field, fields_of
-from blocksim.common.files import AnyPath
+from blocksim.common.files import AnyPath, read_toml
 from blocksim.common.tables import Written, as_said
 from blocksim.engines import ENGINES
 from blocksim.kinds import KINDS
 from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.scenarios import RENAMED, written_in
 from blocksim.simulation.simulated import require_setting
 from blocksim.sweeps.case import ACTING, PLAIN, Value
 from blocksim.sweeps.design import Axis, AxisField, Design, How, Values, Words, require_axis
@@ -93,7 +92,7 @@ def load_design(path: AnyPath) -> Design:
     InputError
         In one line, with file, field, value and what is allowed.
     """
-    table = written_in(path, "design", "an existing .toml file")
+    table = read_toml(path, "design", "an existing .toml file")
     try:
         return design_of(table)
     except InputError as error:
@@ -153,8 +152,7 @@ def _kind(table: Mapping[str, Any], name: str) -> type[Kind[Any]]:
 
 def _require_known(table: Mapping[str, Any], keys: Sequence[str], path: str) -> None:
     for name in table:
-        now = RENAMED.get(name)
-        allowed = f"named {now}" if now and now in keys else "left out: there is no such key"
+        allowed = "left out: there is no such key"
         require(name in keys, f"{path}{name}", table[name], allowed)
 
 
