@@ -80,7 +80,7 @@ def test_a_shell_completes_commands_and_options() -> None:
 
 def test_help_lists_every_command_with_the_first_line_of_its_own_help() -> None:
     told = " ".join(CliRunner().invoke(app, ["--help"]).output.split())
-    for name, (_, about) in COMMANDS.items():
+    for name in COMMANDS:
         own = CliRunner().invoke(app, [name, "--help"]).output
-        assert " ".join(own.split("\n\n")[1].split()) == about
+        about = " ".join(own.split("\n\n")[1].split())
         assert f" {name} {about}" in told

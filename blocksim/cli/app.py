@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import pkgutil
+import re
 import sys
 from functools import partial
 from importlib import import_module
@@ -19,86 +21,41 @@ from blocksim.common.later import Later
 from blocksim.common.version import __version__
 
 COMMANDS = {
-    "check": (
-        "asking.check",
-        "Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided.",
-    ),
-    "bracket": (
-        "asking.bracket",
-        "Find where it starts to fall as one parameter changes: how thin an arch can be.",
-    ),
-    "verify": (
-        "proving.verify",
-        "Check a proof that blocks stand or fall, in rational arithmetic.",
-    ),
-    "simulate": ("commands.simulate", "Let it go and record its motion."),
-    "fragility": (
-        "fragile.fragility",
-        "Find which share of records of the ground brings it down, by their amplitude.",
-    ),
-    "render": ("commands.render", "Draw what is built to scale, or film its motion."),
-    "convert": (
-        "converting.convert",
-        "Turn a drawing into a structure file, so that loads, weights or friction "
-        "can be added.",
-    ),
-    "report": (
-        "reporting.report",
-        "Write a report on one structure, to print and to sign. Exit codes are those of check.",
-    ),
-    "validate": (
-        "studies.validate",
-        "Simulate published arches and structures; compare with the map and their sources.",
-    ),
-    "chart": (
-        "studies.chart",
-        "Chart the error of every method, from coarse to fine, against time and work.",
-    ),
-    "suite export": (
-        "refereeing.export",
-        "Write scenes of which the answer is proved, for engines of any language.",
-    ),
-    "suite score": (
-        "refereeing.score",
-        "Hold what an engine said of these scenes to the truth.",
-    ),
-    "suite replay": (
-        "refereeing.replay",
-        "Make a recording of what an engine said of a scene.",
-    ),
-    "sweep": (
-        "sweeping.sweep",
-        "Ask about many arches. A run that was killed goes on where it was.",
-    ),
-    "map": (
-        "mapping.draw_map",
-        "Draw the analytical map of least thickness and collapse modes.",
-    ),
-    "paper": (
-        "mapping.paper",
-        "Draw every figure of the paper, and compare every number that it prints.",
-    ),
-    "scenarios": (
-        "listing.list_scenarios",
-        "List the structures and vehicles that come with blocksim.",
-    ),
-    "kinds": (
-        "listing.list_kinds",
-        "List the kinds of structures, or the parameters of one.",
-    ),
-    "doctor": (
-        "installed.doctor",
-        "Tell what is installed and what each method can do here.",
-    ),
-    "cite": (
-        "installed.cite",
-        "Print BibTeX of blocksim, of the paper, and of what methods rest on.",
-    ),
+    "check": "asking.check",
+    "bracket": "asking.bracket",
+    "verify": "proving.verify",
+    "simulate": "commands.simulate",
+    "fragility": "fragile.fragility",
+    "render": "commands.render",
+    "convert": "converting.convert",
+    "report": "reporting.report",
+    "validate": "studies.validate",
+    "chart": "studies.chart",
+    "suite export": "refereeing.export",
+    "suite score": "refereeing.score",
+    "suite replay": "refereeing.replay",
+    "sweep": "sweeping.sweep",
+    "map": "mapping.draw_map",
+    "paper": "mapping.paper",
+    "scenarios": "listing.list_scenarios",
+    "kinds": "listing.list_kinds",
+    "doctor": "installed.doctor",
+    "cite": "installed.cite",
 }
-"""File and function of each command, which may be two words, and the first line of its help."""
+"""File and function of each command, which may be two words."""
 
 
 COMPLETES = "_BLOCKSIM_COMPLETE"
+
+
+def about_of(name: str) -> str:
+    """Return the first line of the help of a command, which is not loaded to be listed."""
+    file, _, function = COMMANDS[name].partition(".")
+    source = (pkgutil.get_data(__package__ or "", f"{file}.py") or b"").decode()
+    found = re.search(
+        rf'^def {function}\(.*?"""(.*?)("""|\n)', source, re.DOTALL | re.MULTILINE
+    )
+    return found[1] if found else ""
 
 
 class Commands(click.Group):
@@ -123,13 +80,13 @@ class Commands(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
         """Write the commands and what they are for."""
         with formatter.section("Commands"):
-            formatter.write_dl([(name, about) for name, (_, about) in COMMANDS.items()])
+            formatter.write_dl([(name, about_of(name)) for name in COMMANDS])
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         """Return the names that begin so, and options of the program itself."""
         found = [
-            CompletionItem(name, help=about)
-            for name, (_, about) in COMMANDS.items()
+            CompletionItem(name, help=about_of(name))
+            for name in COMMANDS
             if name.startswith(incomplete)
         ]
         return [*found, *click.Command.shell_complete(self, ctx, incomplete)]
@@ -154,7 +111,7 @@ def start(context: click.Context, version: bool) -> None:
 
 
 _commands: Any = Later(
-    {name: partial(_command, name, place) for name, (place, _) in COMMANDS.items()}
+    {name: partial(_command, name, place) for name, place in COMMANDS.items()}
 )
 app = Commands(
     "blocksim",
