@@ -17,7 +17,7 @@ from report_rows import ARCH, ROW, sliding
 from running import inside as blocksim
 from test_scenario import ARCHES, LEANING
 
-from blocksim import CircularArch, InputError, Mode, Verdict, load_recording
+from blocksim import CircularArch, InputError, Mode, Verdict, load_recording, load_structure
 from blocksim.cli.studies import validation_lines
 from blocksim.common.files import json_text
 from blocksim.kinds.loading import Known, load_known
