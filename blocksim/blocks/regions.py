@@ -19,6 +19,8 @@ from blocksim.common.checks import require
 
 MOST_NEAR = 100
 """Pairs of faces near each other, for each face: blocks have a handful."""
+FINEST = 1e-8
+"""Step to which corners are rounded where parts of a body are put together, over its size."""
 FIRST_LOOK, LONGEST_LOOK = 4, 16_384
 """Polygons whose neighbours are looked up at once: few at first, for an error is found soon."""
 
@@ -48,6 +50,22 @@ def overlap_each_other(parts: Sequence[Array], tolerance: float) -> bool:
 def hull(parts: Sequence[Array]) -> Array:
     """Return the convex hull of polygons, counter-clockwise."""
     return _corners(shapely.MultiPoint(np.concatenate(parts)).convex_hull)
+
+
+def rings(parts: Sequence[Array]) -> list[Array]:
+    """Return the rims of what polygons that touch cover, the body to the left, (k, 2) each.
+
+    Sides within `FINEST` of their size lie on each other.
+    """
+    size = float(np.ptp(np.concatenate(parts), axis=0).max())
+    # A power of ten, so that round numbers stay what they are.
+    grid = 10.0 ** np.floor(np.log10(FINEST * size))
+    whole = shapely.union_all([shapely.Polygon(part) for part in parts], grid_size=grid)
+    turned: Any = shapely.orient_polygons(whole)
+    found = [
+        ring for each in shapely.get_parts(turned) for ring in (each.exterior, *each.interiors)
+    ]
+    return [shapely.get_coordinates(ring)[:-1] for ring in found]
 
 
 def _corners(region: Any) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, BinaryIO
 
 import matplotlib as mpl
 import numpy as np
@@ -15,7 +15,6 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from blocksim.blocks.acting import tilt_and_lean
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState
-from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import Problem
 from blocksim.common.words import printable
 from blocksim.view.style import FONT, JOINTS
@@ -29,10 +28,6 @@ ARCH_WORDS = {
 }
 HINGES = {JointState.HINGE_INTRADOS: 0, JointState.HINGE_EXTRADOS: 1}
 """End of a joint that stays closed: inner or outer."""
-NEAR = 1e-6
-"""Share of a length within which sides lie on each other."""
-MEETS = 1e-9
-"""Share of a side within which ends of sides are the same corner."""
 DOTS = 150
 """In an inch of a picture whose height is not given."""
 
@@ -116,80 +111,14 @@ def clipped(polygon: Array, low: Array, high: Array) -> Array:
     return polygon if len(polygon) >= 3 else polygon[:0]
 
 
-class Part(NamedTuple):
-    """A part of a side of one of several polygons, from one share of it to another."""
-
-    polygon: int
-    side: int
-    start: float
-    stop: float
-
-
-def outer_parts(polygons: Sequence[Array]) -> list[Part]:
-    """Parts of the sides of polygons that touch where no other of them is met."""
-    sides = [
-        (place, side, one, two)
-        for place, polygon in enumerate(polygons)
-        for side, (one, two) in enumerate(
-            zip(polygon, np.roll(polygon, -1, axis=0), strict=True)
-        )
-    ]
-    found: list[Part] = []
-    for place, side, one, two in sides:
-        length = float(np.hypot(*(two - one)))
-        if length == 0:
-            continue
-        along = (two - one) / length
-        across = np.array([-along[1], along[0]])
-        hidden: list[tuple[float, float]] = []
-        for other, _, start, stop in sides:
-            off = max(abs(float((start - one) @ across)), abs(float((stop - one) @ across)))
-            # A side that meets this one runs the other way.
-            first, last = float((stop - one) @ along), float((start - one) @ along)
-            if other != place and off < NEAR * length and first < last:
-                hidden.append((first / length, last / length))
-        reached = 0.0
-        for first, last in [*sorted(hidden), (1.0, 1.0)]:
-            if first > reached + NEAR:
-                found.append(Part(place, side, reached, min(first, 1.0)))
-            reached = max(reached, last)
-    return found
-
-
-def outer_sides(polygons: Sequence[Array]) -> list[Array]:
-    """Sides of polygons that touch, without where two of them meet, (2, 2) each."""
-    return [
-        along_side(polygons[polygon], side, start, stop)
-        for polygon, side, start, stop in outer_parts(polygons)
-    ]
-
-
-def outline(polygons: tuple[Array, ...]) -> Array:
-    """Return the outline of convex polygons that touch, counter-clockwise."""
+def rims(polygons: Sequence[Array]) -> list[Array]:
+    """Return the rims of polygons that touch, without sides where two of them meet."""
     if len(polygons) == 1:
-        return polygons[0]
-    sides = outer_sides(polygons)
-    near = MEETS * max(float(np.hypot(*(side[1] - side[0]))) for side in sides)
-    left, corners = sides[1:], [sides[0][0], sides[0][1]]
-    while left:
-        ahead = next(
-            (k for k, side in enumerate(left) if np.hypot(*(side[0] - corners[-1])) < near),
-            None,
-        )
-        if ahead is None:
-            break
-        corners.append(left.pop(ahead)[1])
-    closed = np.array(corners)
-    if left or np.hypot(*(closed[-1] - closed[0])) > near or signed_area(closed[:-1]) <= 0:
-        message = "the outline is not one closed line"
-        raise ValueError(message)
-    return closed[:-1]
+        return list(polygons)
+    # Most blocks are one polygon, which needs no library.
+    from blocksim.blocks.regions import rings
 
-
-def along_side(corners: Array, side: int, start: float, stop: float) -> Array:
-    """Two points on a side of a polygon, by their shares of it, (2, 2 or 3)."""
-    ends = np.array([[1 - start, start], [1 - stop, stop]])
-    return ends @ corners[[side, (side + 1) % len(corners)]]
+    return rings(polygons)
 
 
 def grain_of(assembly: Assembly) -> float:

@@ -56,8 +56,8 @@ class Placing:
 
     It has:
     `owner`, (pieces,): The block that each piece belongs to.
-    `sides`: Corners of each piece; what has fewer repeats its last one.
-    `outlines`, (pieces, sides, 2): Of the pieces, from the centres of their blocks.
+    `outlines`, (pieces, sides, 2): Of the pieces, from the centres of their blocks; what has
+        fewer corners repeats its last one.
     """
 
     def __init__(self, recording: Recording) -> None:
@@ -68,9 +68,9 @@ class Placing:
             for part in block.polygons
         ]
         self.owner = np.array([index for index, _ in pieces])
-        self.sides = max(len(each) for _, each in pieces)
+        sides = max(len(each) for _, each in pieces)
         self.outlines = np.array(
-            [np.pad(each, ((0, self.sides - len(each)), (0, 0)), "edge") for _, each in pieces]
+            [np.pad(each, ((0, sides - len(each)), (0, 0)), "edge") for _, each in pieces]
         )
         self._half = assembly.depths[self.owner] / 2
         self._frames = Frames(recording)

@@ -8,7 +8,7 @@ from scipy.spatial import ConvexHull
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.view.canvas import Label, Panel, Shape, colour, edge_width, mixed, stone_tones
-from blocksim.view.drawing import HINGES, along_side, words_of
+from blocksim.view.drawing import HINGES, words_of
 from blocksim.view.stage import Stage
 from blocksim.view.style import DASHES, GROUND, INK, PAPER, STONE, THRUST
 from blocksim.view.timeline import Moment
@@ -65,28 +65,23 @@ class PlanarView:
         # What has turned out of the plane shows its sides, too; the nearest comes last.
         heights = moment.corners[..., 2].max(axis=(1, 2)).round(9)
         order = np.argsort(heights, kind="stable").tolist()
-        owner, outer = self._stage.owner, self._stage.outer
+        owner, parted = self._stage.owner, {at for at, _ in self._stage.rims}
         blocks: list[Shape] = []
         for piece in order:
             points = self._to_pixels(_outline(moment.corners[piece]))
             tone = self._tones[owner[piece]]
             if owner[piece] in self._stage.carriers:
                 tone = mixed(colour(GROUND), colour(PAPER), 0.35)
-            if piece not in outer:
+            if owner[piece] not in parted:
                 blocks.append(Shape(points, fill=tone, edge=edge, width=self._line))
                 continue
             # Parts of one block have no edge between them: a hair of stone closes the seam.
             blocks.append(Shape(points, fill=tone, edge=tone, width=SEAM))
-        blocks += [
-            Shape(
-                self._to_pixels(along_side(moment.corners[piece, 0, :, :2], *part[1:])),
-                edge=edge,
-                width=self._line,
-                closed=False,
-            )
-            for piece, parts in outer.items()
-            for part in parts
-        ]
+        for at, rim in self._stage.rims:
+            half = float(self._stage.assembly.depths[at]) / 2
+            near = np.pad(rim, ((0, 0), (0, 1)), constant_values=half) @ moment.turns[at].T
+            points = self.places(near + moment.places[at])
+            blocks.append(Shape(points, edge=edge, width=self._line))
         return [*blocks, *self._joints(moment), *self._thrust(moment)]
 
     def places(self, points: Array) -> Array:

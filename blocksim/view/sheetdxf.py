@@ -15,15 +15,15 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.closing import marked_gaps
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.road import profile_of, road_of
+from blocksim.common.checks import require
 from blocksim.common.dates import is_dated
-from blocksim.common.errors import InputError
 from blocksim.common.later import require_library
 from blocksim.common.version import __version__
 from blocksim.common.words import printable
 from blocksim.limit import in_world
 from blocksim.view.arrows import FAINT, acting_on
 from blocksim.view.dimensions import Length, dimensions_of
-from blocksim.view.drawing import HINGES, outline
+from blocksim.view.drawing import HINGES, rims
 from blocksim.view.sheet import A4, Sheet, scale_for, scale_words
 from blocksim.view.structure import fill_outlines
 
@@ -120,7 +120,7 @@ def _bodies(space: Any, sheet: Sheet) -> Array:
         for index, support in enumerate(problem.assembly.supports)
     ]
     known = len(bodies)
-    bodies += [outline(parts) for parts in sheet.supports[known:]]
+    bodies += [rim for parts in sheet.supports[known:] for rim in rims(parts)]
     for each in bodies:
         _polyline(space, each, "supports", close=True)
     for joint in problem.assembly.joints:
@@ -130,11 +130,10 @@ def _bodies(space: Any, sheet: Sheet) -> Array:
 
 
 def _named(polygons: tuple[Array, ...], name: str) -> Array:
-    try:
-        return outline(polygons)
-    except ValueError:
-        allowed = "without holes, and one body: polylines of DXF have one outline"
-        raise InputError(name, f"{len(polygons)} polygons", allowed) from None
+    found = rims(polygons)
+    allowed = "without holes, and one body: polylines of DXF have one outline"
+    require(len(found) == 1, name, f"{len(polygons)} polygons", allowed)
+    return found[0]
 
 
 def _polyline(space: Any, points: Array, layer: str, *, close: bool) -> None:

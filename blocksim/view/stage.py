@@ -21,7 +21,7 @@ from blocksim.engines.ground import ground_level, piers
 from blocksim.kinds.offers import carried_of
 from blocksim.limit.carried import Carried
 from blocksim.simulation.recording import Recording
-from blocksim.view.drawing import Part, clipped, grain_of, outer_parts
+from blocksim.view.drawing import clipped, grain_of, rims
 from blocksim.view.placing import Placing, depth_of
 from blocksim.view.solidscene import Solids
 from blocksim.view.thrustlines import is_chained, near_blocks, thrust_lines
@@ -72,7 +72,7 @@ class Stage(Timeline):
             self.ground, self._fixed = float(max(tops)) / size, ()
         self.footings, self._bearing = self._standing()
         self._placing = Placing(recording)
-        self.owner, self.sides = self._placing.owner, self._placing.sides
+        self.owner = self._placing.owner
         self.grain = grain_of(self.assembly) / size
 
     def solids(self, line: float) -> Solids:
@@ -182,22 +182,15 @@ class Stage(Timeline):
         return np.concatenate([rest, bounded])
 
     @cached_property
-    def outer(self) -> dict[int, list[Part]]:
-        """Parts of sides that are seen, by piece, of blocks that have several."""
-        found: dict[int, list[Part]] = {}
-        first = 0
-        for block in self.assembly.blocks:
-            if len(block.polygons) > 1:
-                for piece in range(len(block.polygons)):
-                    found[first + piece] = []
-                for part in outer_parts(block.polygons):
-                    piece = first + part.polygon
-                    # The last side comes after the repeated corners.
-                    closes = part.side == len(block.polygons[part.polygon]) - 1
-                    side = self.sides - 1 if closes else part.side
-                    found[piece].append(part._replace(polygon=piece, side=side))
-            first += len(block.polygons)
-        return found
+    def rims(self) -> list[tuple[int, Array]]:
+        """Rims of blocks that have several pieces, from their centres, with the block."""
+        blocks = enumerate(self.assembly.blocks)
+        return [
+            (at, (rim - block.centre) / self.assembly.size)
+            for at, block in blocks
+            if len(block.polygons) > 1
+            for rim in rims(block.polygons)
+        ]
 
     def at(self, time: float) -> Moment:
         """Return where everything is at a time, between frames by interpolation."""

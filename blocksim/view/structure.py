@@ -15,6 +15,7 @@ from matplotlib.path import Path
 from blocksim.blocks.assembly import SUPPORT, Array, Joint
 from blocksim.blocks.closing import marked_gaps
 from blocksim.blocks.joints import JointState
+from blocksim.blocks.outlines import following
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import profile_of, road_of
 from blocksim.view.arrows import draw_loads
@@ -22,7 +23,7 @@ from blocksim.view.drawing import (
     HINGES,
     carried,
     clipped,
-    outer_sides,
+    rims,
     words_of,
 )
 from blocksim.view.style import (
@@ -100,7 +101,8 @@ def draw_supports(axes: Axes, problem: Problem) -> list[Array]:
                       gid=f"support-{index}", label="support")
         )  # fmt: skip
         # Where the picture ends, the support goes on.
-        sides = [side for side in outer_sides(parts) if not _on_box(side, box)]
+        around = (np.stack([rim, following(rim)], axis=1) for rim in rims(parts))
+        sides = [side for each in around for side in each if not _on_box(side, box)]
         axes.add_collection(LineCollection(sides, colors=INK, linewidths=0.9, zorder=0.6))
         shown += parts
     return shown
@@ -187,10 +189,11 @@ def draw_blocks(axes: Axes, problem: Problem, width: float) -> None:
             PathPatch(_shape(block.polygons), fc=STONE, ec=STONE, lw=0.4, zorder=1,
                       gid=f"block-{index}")
         )  # fmt: skip
-        sides = outer_sides(block.polygons)
+        lines = list(map(_closed, rims(block.polygons)))
         axes.add_collection(
-            LineCollection(sides, colors=INK, linewidths=width, zorder=2, capstyle="round")
-        )
+            LineCollection(lines, colors=INK, linewidths=width, zorder=2, capstyle="round",
+                           joinstyle="round")
+        )  # fmt: skip
     _draw_gaps(axes, problem)
 
 
@@ -253,15 +256,16 @@ def draw_mechanism(
         if reach[index] <= FAINT * largest:
             continue
         scale = MOVED * extent / largest
-        moved = [
-            part + scale * carried(part, block.centre, rates[index]) for part in block.polygons
-        ]
+        moved, lines = (
+            [each + scale * carried(each, block.centre, rates[index]) for each in of]
+            for of in (block.polygons, map(_closed, rims(block.polygons)))
+        )
         axes.add_patch(
             PathPatch(_shape(moved), fc=MECHANISM, alpha=0.13, ec="none", zorder=3,
                       gid=f"moved-{index}")
         )  # fmt: skip
         axes.add_collection(
-            LineCollection(outer_sides(moved), colors=MECHANISM, linewidths=1.1, zorder=4,
+            LineCollection(lines, colors=MECHANISM, linewidths=1.1, zorder=4,
                            linestyles=[line_style(MECHANISM)],
                            label="mechanism, enlarged")
         )  # fmt: skip
