@@ -101,16 +101,15 @@ def _merged(blocks: list[Block]) -> Block:
     if len(blocks) == 1:
         return blocks[0]
     # Imported here, as others are: nothing is loaded before it is asked for.
-    from scipy.spatial import ConvexHull
+    from blocksim.blocks.regions import hull
 
     mass = np.array([block.mass for block in blocks])
     centres = np.array([block.centre for block in blocks])
     centre = mass @ centres / mass.sum()
     inertia = sum(block.inertia for block in blocks)
     parts = tuple(part for block in blocks for part in block.polygons)
-    corners = np.concatenate(parts)
     return Block(
-        vertices=corners[ConvexHull(corners).vertices],
+        vertices=hull(parts),
         centre=centre,
         mass=float(mass.sum()),
         inertia=float(inertia + mass @ ((centres - centre) ** 2).sum(axis=1)),

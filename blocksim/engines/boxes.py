@@ -5,12 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from blocksim.blocks.assembly import Array, Assembly
+from blocksim.blocks.assembly import SPATIAL, Array, Assembly
 from blocksim.engines.faces import LEDGE, Side
 
 PLATE = 0.15
@@ -21,27 +22,34 @@ ROD = 1e-4
 """Thickness of the rod in a corner [size]."""
 EDGE = 1e-2
 """The same, of one that stands on its edge [size]."""
-TURNS = [4, 5, 2]
-"""Columns of the poses that make a rotation vector."""
+PLACES, TURNS = [0, 1, 3], [4, 5, 2]
+"""Columns of the poses of the plane that make a place, and a rotation vector."""
 LEAST_TURN = 1e-2
 """Rotation below which that of a block does not tell its axis [rad]."""
 
 
 class Frame:
-    """Where the plane of the assembly lies in the engine's space.
+    """Where an assembly lies in the engine's space, and how its motions are written.
 
     `turn`: About the vertical [rad].
     `origin`: Place of the assembly's origin [size].
+    `columns`: Of x, y, z and of a rotation vector among those of motions.
+    `built`, (blocks, 4): Quaternions with which bodies are built; by default as the frame is.
     """
 
     def __init__(
-        self, turn: float = 0.0, origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+        self,
+        turn: float = 0.0,
+        origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        columns: Sequence[int] = (*PLACES, *TURNS),
+        built: Array | None = None,
     ) -> None:
         self._turned = Rotation.from_rotvec([0.0, turn, 0.0])
-        self._origin = np.array(origin)
+        self._origin, self._columns = np.array(origin), list(columns)
+        self._built = self._turned if built is None else Rotation.from_quat(built)
 
     def vector(self, x: float, y: float, z: float) -> list[float]:
-        """Turn a vector of the plane, z out of it, into the engine's space."""
+        """Turn a vector of the assembly into the engine's space; z is out of a plane."""
         turned: list[float] = self._turned.apply([x, y, z]).tolist()
         return turned
 
@@ -61,14 +69,14 @@ class Frame:
 
         `linear`, `angular`, (blocks, 3): In the engine's space.
         """
-        back = self._turned.inv()
-        shift, turn = back.apply(linear), back.apply(angular)
-        return np.column_stack([shift[:, :2], turn[:, 2], shift[:, 2], turn[:, :2]])
+        back, found = self._turned.inv(), np.zeros((len(linear), SPATIAL))
+        found[:, self._columns] = np.hstack([back.apply(linear), back.apply(angular)])
+        return found
 
     def told(self, motion: Array) -> tuple[list[float], list[float]]:
         """Return a motion in the assembly's columns, (6,), as vectors of the engine's space."""
-        x, y, turn, z, *lean = motion.tolist()
-        return self.vector(x, y, z), self.vector(lean[0], lean[1], turn)
+        x, y, z, *turns = motion[self._columns].tolist()
+        return self.vector(x, y, z), self.vector(*turns)
 
     def flat(self, place: Array, shift: Array) -> tuple[list[float], list[float]]:
         """Return a place and a velocity, (3,) each, without what is out of the plane."""
@@ -88,7 +96,7 @@ class Frame:
 
     def poses(self, places: Array, quaternions: Array) -> Array:
         """Return places (blocks, 3) and orientations x, y, z, w (blocks, 4) likewise."""
-        since = Rotation.from_quat(quaternions) * self._turned.inv()
+        since = Rotation.from_quat(quaternions) * self._built.inv()
         return self.motions(places - self._origin, since.as_rotvec())
 
 

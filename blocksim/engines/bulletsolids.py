@@ -15,10 +15,10 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.assembly import SPATIAL, SUPPORT, Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
-from blocksim.engines.boxes import Box
+from blocksim.engines.boxes import Box, Frame
 from blocksim.engines.bulletparts import Joints, Link, let_go, linked, met
 from blocksim.engines.bulletspace import NOTHING, SLOP, Space, State, friction_share
 from blocksim.engines.polyhedra import Polyhedra
@@ -32,33 +32,6 @@ UNMOVED = State(NOTHING, (0.0, 0.0, 0.0, 1.0))
 """How supports are built."""
 
 
-class Upright:
-    """Bullet's axes as those of the assembly.
-
-    `built`, (blocks, 4): Quaternions with which bodies are built.
-    """
-
-    def __init__(self, built: Array) -> None:
-        self._back = Rotation.from_quat(built).inv()
-
-    def vector(self, x: float, y: float, z: float) -> list[float]:
-        """Return a vector."""
-        return [x, y, z]
-
-    def told(self, motion: Array) -> tuple[list[float], list[float]]:
-        """Return a motion, (6,), as two vectors."""
-        return motion[:3].tolist(), motion[3:].tolist()
-
-    def motions(self, linear: Array, angular: Array) -> Array:
-        """Return velocities, (blocks, 6)."""
-        return np.hstack([linear, angular])
-
-    def poses(self, places: Array, quaternions: Array) -> Array:
-        """Return places and rotation vectors since bodies were built."""
-        since = Rotation.from_quat(quaternions) * self._back
-        return np.hstack([places, since.as_rotvec()])
-
-
 class Spatial(Polyhedra):
     """The blocks of a problem in space as bodies; see `bulletmotion`."""
 
@@ -68,7 +41,7 @@ class Spatial(Polyhedra):
     def __init__(self, problem: Problem[SpatialAssembly]) -> None:
         super().__init__(problem)
         self.turns = [3, 4, 5]
-        self.frame = Upright(self.quaternions)
+        self.frame = Frame(columns=range(SPATIAL), built=self.quaternions)
         self.reach: Array = self.bodies.reach
         centres = self.bodies.built.centres.tolist()
         self.states = [

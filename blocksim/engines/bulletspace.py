@@ -16,16 +16,13 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.base import Library
 from blocksim.engines.boxes import Box, Frame
-
-if TYPE_CHECKING:
-    from blocksim.engines.bulletsolids import Upright
 
 bullet: Any = Library("pybullet", quiet=True)
 
@@ -87,7 +84,7 @@ class Space:
     `breaking`: Breaking threshold: points of contact closer than that replace each other.
     """
 
-    def __init__(self, frame: Frame | Upright, breaking: float) -> None:
+    def __init__(self, frame: Frame, breaking: float) -> None:
         self.frame, self._client = frame, _Client()
         self._begin(breaking)
 

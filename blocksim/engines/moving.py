@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Block, Joint, Support
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.regions import hull
 from blocksim.engines.base import Settings
 from blocksim.engines.direct import EXACT, Blocks
 
@@ -98,12 +97,6 @@ class OnMovingSupports(Blocks):
         return float(np.abs(found[: self._count]).max())
 
 
-def _hull(points: Array) -> Array:
-    """Return the corners around points, counter-clockwise."""
-    found: Any = ConvexHull(points)
-    return points[found.vertices]
-
-
 def _with_supports_as_blocks(problem: Problem, deep: float) -> Problem:
     """Return the problem with supports that move as its last blocks, ground far below."""
     assembly = problem.assembly
@@ -112,7 +105,7 @@ def _with_supports_as_blocks(problem: Problem, deep: float) -> Problem:
     place = {move.support: count + at for at, move in enumerate(problem.moves)}
     made = tuple(
         Block(
-            vertices=_hull(np.concatenate(support.polygons)),
+            vertices=hull(support.polygons),
             centre=np.concatenate(support.polygons).mean(axis=0),
             mass=mass,
             inertia=mass * assembly.size**2,

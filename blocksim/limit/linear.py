@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -40,12 +41,14 @@ class Optimum:
     `prices`, (rows,): By how much the least cost grows with the right side of each row.
     `unbounded`: Whether nothing limits the cost from below.
     `basis`: HiGHS's own: what is active.
+    `least`: Where unknowns have to be whole, what the cost cannot be below.
     """
 
     values: Array
     prices: Array
     unbounded: bool
     basis: Any = None
+    least: float = -math.inf
 
     @property
     def basic(self) -> tuple[list[int], list[int]]:
@@ -61,20 +64,6 @@ class Optimum:
     def exists(self) -> bool:
         """Whether there is an optimum."""
         return bool(self.values.size)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Choice:
-    """What came of a programme with unknowns that are 0 or 1.
-
-    `values`, (unknowns,): The best that was found; empty where nothing was.
-    `least`: What the cost cannot be below.
-    `is_empty`: Whether nothing satisfies the rows.
-    """
-
-    values: Array
-    least: float
-    is_empty: bool
 
 
 NONE = Optimum(values=np.zeros(0), prices=np.zeros(0), unbounded=False)
@@ -180,13 +169,14 @@ def choose(
     whole: NDArray[np.bool_],
     gap: float,
     seconds: float,
-) -> Choice:
+) -> Optimum:
     """Find the least cost where some of the unknowns have to be whole, by branch and bound.
 
     `cost`, `matrix`, `rows`, `bounds`: As of `LinearProgramme.solve`.
     `whole`, (unknowns,): Which unknowns are whole.
     `gap`: By how much the cost found may be above the least.
     `seconds`: Time after which it ends with the best it has.
+    Returns: The best that was found, without prices.
     """
     model = _model(cost, sparse.csc_array(matrix), rows, bounds)
     kinds = highspy.HighsVarType
@@ -200,12 +190,9 @@ def choose(
     )
     highs.passModel(model)
     highs.run()
-    solution, status = highs.getSolution(), highs.getModelStatus()
-    return Choice(
-        values=np.array(solution.col_value if solution.value_valid else []),
-        least=float(highs.getInfo().mip_dual_bound),
-        is_empty=status == highspy.HighsModelStatus.kInfeasible,
-    )
+    solution = highs.getSolution()
+    values = np.array(solution.col_value if solution.value_valid else [])
+    return replace(NONE, values=values, least=float(highs.getInfo().mip_dual_bound))
 
 
 def _solver(**options: float) -> Any:
