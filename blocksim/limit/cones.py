@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
@@ -123,15 +122,6 @@ class Cones:
         """Sparse (2 joints, parts): what the parts press at each end of each joint."""
         at = (self._end, np.arange(self.count))
         return sparse.csr_array((self._normal, at), shape=(2 * self._joints, self.count))
-
-    def part(self, index: int) -> tuple[int, int, Fraction, Fraction]:
-        """Return joint and end of a part, and its share of normal and tangent, exactly."""
-        joint, end = divmod(int(self._end[index]), 2)
-        normal, tangent = float(self._normal[index]), float(self._tangent[index])
-        mu = float(self._friction[joint])
-        if not normal or not tangent:
-            return joint, end, Fraction(bool(normal)), Fraction(bool(tangent))
-        return joint, end, Fraction(1), Fraction(math.copysign(mu, tangent))
 
     def loads(self, pull: Array) -> Array:
         """Return loads on the blocks as the balance has them, in one row."""

@@ -25,7 +25,7 @@ from blocksim.arch.theory.equations import normal_force
 from blocksim.arch.theory.lines import critical_moment, friction_line, thrust_line
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
-from blocksim.view.drawing import ARCH_WORDS, friction_words
+from blocksim.view.drawing import ARCH_WORDS, carried, friction_words
 from blocksim.view.style import (
     FONT,
     FRICTION,
@@ -46,6 +46,7 @@ ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
 SUPPORT, WIDER = 0.06, 0.25
 """Angle over which a support is drawn [rad]; how much it is wider than the springing."""
 FORCELESS = 1e-9
+ORIGIN = np.zeros(2)
 FARTHEST = 0.3
 """Distance from the arch beyond which a line that leaves it is not drawn [r]."""
 SLIDES = "sliding joint: it opens, too (dilatancy)"
@@ -230,12 +231,12 @@ def _draw_mechanism(axes: Axes, picture: ArchPicture) -> None:
     motions = picture.collapse.motions
     rings = [_ring(*pair, *picture.sides) for pair in pairwise(angles.tolist())]
     reach = max(
-        float(np.hypot(*_velocity(motion, ring).T).max())
+        float(np.hypot(*carried(ring, ORIGIN, motion).T).max())
         for motion, ring in zip(motions, rings, strict=True)
     )
     for first, last in pairwise(ends.tolist()):
         ring = _ring(float(angles[first]), float(angles[last]), *picture.sides)
-        moved = ring + MOVED / reach * _velocity(motions[first], ring)
+        moved = ring + MOVED / reach * carried(ring, ORIGIN, motions[first])
         _put(axes, moved, fc=MECHANISM, alpha=0.13, ec="none", zorder=1)
         _put(axes, moved, fill=False, ec=MECHANISM, lw=1.3, ls=line_style(MECHANISM), zorder=4,
              label="mechanism")  # fmt: skip
@@ -285,7 +286,3 @@ def _ring(start: float, stop: float, inner: float, outer: float) -> Array:
 def _radius(angle: float, inner: float, outer: float) -> tuple[list[float], list[float]]:
     sine, cosine = math.sin(angle), math.cos(angle)
     return [inner * sine, outer * sine], [inner * cosine, outer * cosine]
-
-
-def _velocity(motion: Array, points: Array) -> Array:
-    return motion[:2] + motion[2] * np.column_stack([-points[:, 1], points[:, 0]])

@@ -9,6 +9,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from scipy.optimize import isotonic_regression
 
 from blocksim.arch.circular import Weight
 from blocksim.arch.theory import Curve, equations, landmarks, least_thicknesses
@@ -105,23 +106,9 @@ def angle_name(half_angle: float) -> str:
 
 def apart(heights: Sequence[float], space: float) -> list[float]:
     """Move heights, which grow, as little as needed to be apart by a space."""
-    groups: list[list[float]] = []
-    for height in heights:
-        groups.append([height])
-        # Neighbours that are too close become one group about their middle.
-        while len(groups) > 1 and _ends(groups[-2], space)[1] > _ends(groups[-1], space)[0]:
-            groups[-2:] = [groups[-2] + groups[-1]]
-    return [
-        _ends(group, space)[0] + space * (place + 0.5)
-        for group in groups
-        for place in range(len(group))
-    ]
-
-
-def _ends(group: Sequence[float], space: float) -> tuple[float, float]:
-    """Lower and upper end of labels stacked about the middle of what they name."""
-    middle = sum(group) / len(group)
-    return middle - space * len(group) / 2, middle + space * len(group) / 2
+    steps = space * np.arange(len(heights))
+    # Less these steps they may be equal, but not fall.
+    return (isotonic_regression(np.array(heights) - steps).x + steps).tolist()
 
 
 def _dividing_lines(axes: Axes, weight: Weight, friction: FrictionAxis) -> None:

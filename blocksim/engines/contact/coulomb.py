@@ -105,22 +105,6 @@ class Friction:
         a, b = self.room
         return b * size - a * pressure
 
-    def cut(self, place: Array) -> tuple[Array, Contacts]:
-        """Return the forces that contacts can carry, and what the contacts do.
-
-        `place`, (joints, 4): Normal forces of both contacts, y in the place of q where friction
-            is steep, then tangential ones.
-        Returns `forces`, (joints, 4).
-        Returns `contacts`, (joints, 2).
-        """
-        if not self.some_steep:
-            return cut(place, self.mu)
-        forces, contacts = cut(place, np.where(self.steep, 1.0, self.mu))
-        size = np.abs(forces[:, 2:])
-        pressure = np.maximum(place[:, :2] - size, 0.0) + self.flat * size
-        forces[:, :2] = np.where(self.steep, pressure, forces[:, :2])
-        return forces, contacts
-
     def gathered(self, forces: Array) -> Array:
         """Return equal forces whose friction is where the pressure is, for steep friction.
 
@@ -190,23 +174,6 @@ class ContactStatus:
             forces[:, :2] += self._flat * size
             forces[:, 2:] += self.side * size
         return forces
-
-
-def cut(glued: Array, mu: Array | float) -> tuple[Array, Contacts]:
-    """Return the forces that contacts can carry, and what the contacts do.
-
-    `mu`, float or (joints, 1): Finite.
-    Returns `forces`, (joints, 4).
-    Returns `contacts`, (joints, 2).
-    """
-    along = glued[:, 2:]
-    pressure = np.maximum(glued[:, :2], 0.0)
-    most = mu * pressure
-    friction = np.minimum(np.maximum(along, -most), most)
-    contacts = np.where(along > most, SLIDES_UP, STICKS)
-    contacts[along < -most] = SLIDES_DOWN
-    contacts[pressure == 0] = OPEN
-    return np.concatenate([pressure, friction], axis=1), contacts.astype(np.int8)
 
 
 def leaning(rows: Array, slope: Array) -> Array:
