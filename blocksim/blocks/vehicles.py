@@ -5,19 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any, cast
 
-from blocksim.common.checks import COORDINATE, Range, require
+from blocksim.common.checks import COORDINATE, require
 from blocksim.common.errors import InputError, perhaps
 from blocksim.common.files import read_file, shipped_files, toml_of
-from blocksim.common.tables import Words, Written, as_said
 
 LARGEST_FILE = 64 * 1024
 """Bytes; a larger file is not read."""
 MOST_AXLES = 100
 HEAVIEST = 1e6
 """Axle [kN]."""
-HEAVY = Range(low=0, high=HEAVIEST, unit="kN", above=True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +36,7 @@ class Vehicle:
         require(1 <= count <= MOST_AXLES, "axles", count, f"1 to {MOST_AXLES} axles")
         for place, weight in self.axles:
             COORDINATE.require("axles", place)
-            ok = HEAVY.has(weight / 1e3)
+            ok = 0 < weight <= 1e3 * HEAVIEST
             require(ok, "axles", f"{weight / 1e3:g} kN", f"above 0, at most {HEAVIEST:g} kN")
 
     @property
@@ -104,18 +102,6 @@ def _axle(text: str, said: str) -> tuple[float, float]:
         raise InputError("vehicle", said, "axles as 10@0,10@1.2: kN at m") from None
 
 
-@dataclass(frozen=True, kw_only=True)
-class _File(Written):
-    """A file of a vehicle: places [m] and weights [kN] of its axles."""
-
-    axles: Annotated[
-        list[tuple[Annotated[float, COORDINATE], Annotated[float, HEAVY]]],
-        Words("a list of [place in m, weight in kN]"),
-    ]
-    title: str = ""
-    source: str = ""
-
-
 def _read(path: Path) -> Vehicle:
     where = str(path)
     text = read_file(where, "vehicle", "an existing .toml file", LARGEST_FILE)
@@ -124,9 +110,28 @@ def _read(path: Path) -> Vehicle:
     except ValueError as error:
         said = " ".join(str(error).split())
         raise InputError("file", said, "valid TOML", where=where) from None
-    written = as_said(_File, table, where)
-    axles = tuple((place, 1e3 * weight) for place, weight in written.axles)
+    for key, value in table.items():
+        known = key in {"axles", "title", "source"}
+        if not known or (key != "axles" and not isinstance(value, str)):
+            raise InputError(key, value, "axles, title and source, text both", where=where)
+    axles: object = table.get("axles")
+    pairs = cast("list[list[float]]", axles)
+    if not isinstance(axles, list) or not all(map(_is_pair, pairs)):
+        raise InputError(
+            "axles", str(pairs), "a list of [place in m, weight in kN]", where=where
+        )
     try:
-        return Vehicle(axles=axles, title=written.title, source=written.source)
+        return Vehicle(
+            axles=tuple((float(place), 1e3 * float(weight)) for place, weight in pairs),
+            title=table.get("title", ""),
+            source=table.get("source", ""),
+        )
     except InputError as error:
         raise InputError(error.field, error.value, error.allowed, where=where) from None
+
+
+def _is_pair(value: object) -> bool:
+    pair = cast("list[object]", value) if isinstance(value, list) else []
+    return len(pair) == 2 and all(
+        isinstance(each, int | float) and not isinstance(each, bool) for each in pair
+    )
