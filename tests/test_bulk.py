@@ -38,9 +38,12 @@ from blocksim.blocks.road import with_soil
 from blocksim.blocks.soil import Soil
 from blocksim.cli.app import app
 from blocksim.limit.determinate import margin_of_tower, statics_of_stack
+from blocksim.limit.exact import Exact
+from blocksim.limit.proof import proof_of_parting, proof_record
 from blocksim.limit.space import can_rest
 from blocksim.suite.export import questions
 from blocksim.suite.families import Question
+from blocksim.verify import verify
 
 FLOOR: dict[str, Any] = {
     "id": "floor",
@@ -91,6 +94,10 @@ def test_margin_of_a_stack_is_that_of_the_programme(
         assert found.margin < -900
     else:
         assert found.margin == pytest.approx(asked.margin, abs=1e-8, rel=1e-7)
+    if -100 < found.margin < -1e-6:
+        proof = proof_of_parting(Exact(problem), found.weakest, found.above, found.way)
+        assert proof is not None
+        assert verify(proof_record(proof)).startswith("proved: collapses")
 
 
 def test_margins_in_closed_form() -> None:

@@ -1,8 +1,8 @@
 """Many structures, asked one after the other whether they stand, on all processors.
 
-For who filters or labels scenes that a program made. What is asked is limit analysis. Forces of
-a stack that stands and margins of towers follow from statics alone (`limit.determinate`); else,
-and near 0, the ordinary check decides. Answers in the plane are proved.
+For who filters or labels scenes that a program made. What is asked is limit analysis. Forces
+and margins of stacks and of towers follow from statics alone (`limit.determinate`); else, and
+near 0, the ordinary check decides. Answers in the plane are proved.
 """
 
 from __future__ import annotations
@@ -29,12 +29,14 @@ from blocksim.kinds.files import load_structure, structure_of, written
 from blocksim.kinds.offers import offers_of
 from blocksim.limit.determinate import margin_of_tower, statics_of_stack
 from blocksim.limit.exact import Exact
-from blocksim.limit.proof import proof_of_rest
+from blocksim.limit.proof import proof_of_parting, proof_of_rest
 
 Structure = str | bytes | Path | Mapping[str, object] | Problem[Any]
 """A line of JSON, a file, what such a file says, or a problem."""
 NEAR = 1e-6
 """Margin up to which the ordinary check decides."""
+FARTHEST = 100.0
+"""How far below 0 a margin is told by statics alone: from there on programmes stop counting."""
 ALONE = 40
 """Structures that are answered before processes are started."""
 BATCH = 32
@@ -258,10 +260,14 @@ def _answer(problem: Problem[Any]) -> Told:
             return Told(verdict="stands" if margin > 0 else "collapses", margin=margin)
     elif problem.has_statics and problem.strength is None and offers_of(problem) is None:
         stack = statics_of_stack(problem)
-        if stack is not None and stack.margin > NEAR:
-            proof = proof_of_rest(Exact(problem), stack.forces)
+        if stack is not None and abs(stack.margin) > NEAR and stack.margin > -FARTHEST:
+            exact = Exact(problem)
+            if stack.margin > 0:
+                proof = proof_of_rest(exact, stack.forces)
+            else:
+                proof = proof_of_parting(exact, stack.weakest, stack.above, stack.way)
             if proof is not None:
-                return Told(verdict="stands", margin=stack.margin, proved=True)
+                return Told(verdict=proof.claim, margin=stack.margin, proved=True)
     answer = check(problem, method="limit")
     margin = math.nan if answer.static is None else answer.static.margin
     known = None if math.isnan(margin) else margin

@@ -29,10 +29,19 @@ RUBS = 1e-13
 
 
 class Stacked(NamedTuple):
-    """Margin and forces of a stack, as of `Equilibrium`."""
+    """Margin and forces of a stack, as of `Equilibrium`, and what has least to spare.
+
+    `weakest`: The joint of which the margin is.
+    `above`: Blocks that it carries.
+    `way`: How they would part there: 0 and 1 turn about that end, 2 and 3 slide along the
+        tangent and against it.
+    """
 
     margin: float
     forces: Array
+    weakest: int
+    above: set[int]
+    way: int
 
 
 def statics_of_stack(problem: Problem) -> Stacked | None:
@@ -55,9 +64,10 @@ def statics_of_stack(problem: Problem) -> Stacked | None:
     pull = problem.applied_forces()
     arms = assembly.built[:-1, :2]
     pull[:, 2] += arms[:, 0] * pull[:, 1] - arms[:, 1] * pull[:, 0]
-    sums = _carried(assembly.sides, pull)
-    if sums is None:
+    ways = _ways(assembly.sides, len(pull))
+    if ways is None:
         return None
+    sums = _carried(ways, assembly.sides, pull)
     normal, tangent, (start, end) = joints.normal, joints.tangent, joints.ends.swapaxes(0, 1)
     along = (sums[:, :2] * normal).sum(axis=1)
     across = (sums[:, :2] * tangent).sum(axis=1)
@@ -67,13 +77,22 @@ def statics_of_stack(problem: Problem) -> Stacked | None:
     second = turning / (way[:, 0] * normal[:, 1] - way[:, 1] * normal[:, 0])
     # Parts along both edges of both cones: the least is largest where friction is shared so
     # that both ends have as much to spare, if both press by that much.
-    spare = np.minimum(np.minimum(along - second, second), (along - np.abs(across) / mu) / 2)
+    spare = np.stack([second, along - second, (along - np.abs(across) / mu) / 2])
     unit = joint_weights(problem, carried_weights(problem))
-    margin = min(MOST, float((spare * np.maximum(1.0, mu) / (2 * unit)).min()))
+    margins = spare.min(axis=0) * np.maximum(1.0, mu) / (2 * unit)
+    weakest = int(margins.argmin())
+    way = int(spare[:, weakest].argmin())
+    if way == 2 and across[weakest] > 0:
+        way = 3
+    above = set[int]()
+    for block, joint, below in ways:
+        if joint == weakest or below in above:
+            above.add(block)
     pressing = np.stack([along - second, second], axis=1)
     # Each end bears its share of the force across.
     rubbing = pressing * (across / np.where(along == 0.0, 1.0, along))[:, None]
-    return Stacked(margin, np.stack([pressing, rubbing], axis=2))
+    forces = np.stack([pressing, rubbing], axis=2)
+    return Stacked(min(MOST, float(margins[weakest])), forces, weakest, above, way)
 
 
 def margin_of_tower(problem: Problem[SpatialAssembly]) -> float | None:
@@ -85,9 +104,10 @@ def margin_of_tower(problem: Problem[SpatialAssembly]) -> float | None:
     assembly = problem.assembly
     pull = problem.applied_forces() * problem.assembly.units
     pull[:, 3:] += np.cross(assembly.centres, pull[:, :3])
-    sums = _carried(assembly.sides, pull)
-    if sums is None:
+    ways = _ways(assembly.sides, len(pull))
+    if ways is None:
         return None
+    sums = _carried(ways, assembly.sides, pull)
     own, margin = JointPoints(problem).own * problem.unit_force, MOST
     first = 0
     for joint, mu, (x, y, z, *turning) in zip(
@@ -139,13 +159,11 @@ def _dot(one: Vector, other: Vector) -> float:
     return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 
-def _carried(sides: NDArray[np.int64], pull: Array) -> Array | None:
-    """Return force and moment at each joint on the block after it, about the origin.
+def _ways(sides: NDArray[np.int64], count: int) -> list[tuple[int, int, int]] | None:
+    """Return blocks from the ground up, with the joint that bears each, and what is below it.
 
-    (joints, 3 or 6) float, of pulls about the origin; None where that does not follow from
-    equilibrium alone.
+    None where a block reaches the ground in no way, or in more than one.
     """
-    count = len(pull)
     pairs: list[tuple[int, int]] = list(zip(*sides.tolist(), strict=True))
     if len(pairs) != count:
         return None
@@ -153,8 +171,8 @@ def _carried(sides: NDArray[np.int64], pull: Array) -> Array | None:
     for joint, pair in enumerate(pairs):
         for block in pair:
             at[block].append(joint)
-    order, reached = [(SUPPORT, -1)], {SUPPORT}
-    for block, by in order:
+    ways, reached = [(SUPPORT, -1, SUPPORT)], {SUPPORT}
+    for block, by, _ in ways:
         for joint in at[block]:
             if joint == by:
                 continue
@@ -162,14 +180,18 @@ def _carried(sides: NDArray[np.int64], pull: Array) -> Array | None:
             if other in reached:
                 return None
             reached.add(other)
-            order.append((other, joint))
-    if len(reached) <= count:
-        return None
+            ways.append((other, joint, block))
+    return ways[1:] if len(reached) > count else None
+
+
+def _carried(ways: list[tuple[int, int, int]], sides: NDArray[np.int64], pull: Array) -> Array:
+    """Return force and moment at each joint on the block after it, about the origin.
+
+    (joints, 3 or 6) float, of pulls about the origin.
+    """
     above, sums = pull.copy(), np.zeros_like(pull)
-    for block, joint in order[:0:-1]:
-        before, after = pairs[joint]
-        sums[joint] = above[block] * (-1.0 if after == block else 1.0)
-        below = before if after == block else after
+    for block, joint, below in reversed(ways):
+        sums[joint] = above[block] * (-1.0 if sides[1, joint] == block else 1.0)
         if below != SUPPORT:
             above[below] += above[block]
     return sums

@@ -8,7 +8,8 @@ the vector between its ends, its normal the same turned by a right angle: no roo
   only. What is left on each block is handed on, exactly, through the strongest way of joints
   to a support. The sums still lie within the cones, or it is no proof.
 - *Falls*: a little of a motion that opens all joints is added to the rates of the linear
-  programme: rounding can close none of them.
+  programme: rounding can close none of them. Of a stack, what one joint carries turns or slides
+  off it, in whole numbers.
 - Where joints cannot take more, or cannot open, as with friction without bound, the programme
   is solved in rational numbers (`rational`).
 
@@ -18,7 +19,7 @@ the vector between its ends, its normal the same turned by a right angle: no roo
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Literal
@@ -133,6 +134,28 @@ def proof_of_fall(exact: Exact, rates: Array) -> Proof | None:
     size = exact.problem.assembly.size / float(exact.grain)
     _, whole = whole_numbers((rates * [size, size, 1.0]).ravel().tolist())
     return _of_motion(exact, [whole[at : at + 3] for at in range(0, len(whole), 3)])
+
+
+def proof_of_parting(exact: Exact, joint: int, above: Set[int], way: int) -> Proof | None:
+    """Prove that what a joint alone carries parts from what is below, as one.
+
+    `above`, `way`: As of `determinate.Stacked`.
+    Returns: None where that proves nothing.
+    """
+    (p, q), mu = exact.normals[joint], exact.friction[joint] or NOTHING
+    sense = 1 if exact.sides[joint][1] in above else -1
+    # Along the normal and the tangent: as little lift as friction allows.
+    lift, slip = mu.numerator * sense, mu.denominator * (sense if way == 2 else -sense)
+    x, y = exact.ends[joint][way % 2]
+    turn = -sense if way == 0 else sense
+    rates = [[0, 0, 0] for _ in exact.centres]
+    for block in above:
+        cx, cy = exact.centres[block]
+        if way < 2:
+            rates[block] = [turn * (y - cy), turn * (cx - x), turn]
+        else:
+            rates[block] = [lift * p - slip * q, lift * q + slip * p, 0]
+    return _of_motion(exact, rates)
 
 
 def proof_in_rationals(exact: Exact, weights: Array, owner: Sequence[int]) -> Proof | None:
