@@ -11,7 +11,8 @@ A solution is looked for by Newton's method on springs that follow it: p is the 
 friction cone that is nearest, across its axis, to p - r u, with stiff springs r. They begin
 with what contacts did in the last step, or with forces of a cone programme, in which slip opens
 by mu times itself, less a guess of that. From nothing no slip is guessed: of rest and motion,
-where Coulomb's law allows both, that finds rest. Else forces are the end of a path (`path`).
+where Coulomb's law allows both, that finds rest. Else they begin where alternating directions
+lead, which come near a solution from anywhere, of redundant contacts and of wedges, too.
 """
 
 from __future__ import annotations
@@ -24,7 +25,6 @@ from scipy import sparse
 
 from blocksim.blocks.assembly import Array
 from blocksim.common.conic import Cone, solved_cones
-from blocksim.engines.solid.path import ROUNDED, followed
 from blocksim.engines.solid.step import Answer, Step, projected
 
 STIFF = 1e5
@@ -34,9 +34,11 @@ ROUNDS, TRIES = 25, 60
 BRIEFLY = 25
 """Most of Newton's steps in motion, where another guess costs as much."""
 HALVINGS = 6
-GUESSES, MEMORY, NEARER = 10, (1, 4), 0.7
-"""Most guesses of the slip, of how many the next is made, and what makes an answer nearer:
-its residual over that of those before."""
+TURNS, LOOKS, LAGS = 20000, 20, 5.0
+"""Most turns of alternating directions, after how many springs may change, and by how much more
+one of two lags than the other where they do."""
+LATE, LAWFUL = 2000, 1e-6
+"""Turns after which this residual will do."""
 UNSOLVED = 1e-2
 """Residual of what is no solution."""
 NEAR = 1e-3
@@ -56,11 +58,11 @@ FINELY, ROUGHLY = 1e-15, 1e-10
 """Imbalance over the forces at which Newton's method may end, from nothing and in motion."""
 
 
-def solve(step: Step, last: Array | None, *, paths: bool = True) -> Answer:
+def solve(step: Step, last: Array | None, turns: int = TURNS) -> Answer:
     """Solve a step, from what was found in the last one or from nothing.
 
     `last`, (points, 2, 3): Forces, and velocities over the step.
-    `paths`: Whether paths are followed where nothing else leads to a solution: they take long.
+    `turns`: Most turns of alternating directions, where nothing else leads to a solution.
     """
     if not len(step.friction):
         return Answer(step.free, np.zeros((0, 3)), 0.0)
@@ -75,7 +77,7 @@ def solve(step: Step, last: Array | None, *, paths: bool = True) -> Answer:
         if near:
             best = _gone_on(step, last[:, 0], last[:, 1], briefly=briefly)
     begun = last if briefly else None
-    guesses = _guesses(step, begun, paths=paths) if best.residual > enough else ()
+    guesses = _guesses(step, begun, turns) if best.residual > enough else ()
     for guess in guesses:
         found = _followed(step, guess, briefly=briefly)
         if found.residual < best.residual:
@@ -100,48 +102,72 @@ def _as_last_resort(step: Step, best: Answer) -> Answer:
     return Answer(x, forces, max(best.residual, step.residual(x, forces)))
 
 
-def _guesses(step: Step, last: Array | None, *, paths: bool) -> Iterator[Array]:
+def _guesses(step: Step, last: Array | None, turns: int) -> Iterator[Array]:
     """Give forces to begin with, the likeliest and cheapest first."""
+    opening = dilating(step) if last is None else dilating(step, _slip(last[:, 1]), IN_MOTION)
+    if opening is not None:
+        yield opening
     if last is None:
-        opening = dilating(step)
-        if opening is not None:
-            yield opening
         # Of rest near its limit the forces lie on the cones; with less friction within.
         less = dilating(replace(step, friction=LESS * step.friction))
         if less is not None:
             yield less
-    else:
-        for memory in MEMORY:
-            yield from _opening_less(step, _slip(last[:, 1]), memory)
-    for rounded in ROUNDED if paths else ():
-        smoothed = followed(step, rounded)
-        if smoothed is not None:
-            yield smoothed
+    # Near the limit of rest, which is not to be had by now, no forces lead to motion.
+    begun = None if last is None else opening
+    yield _alternated(step, np.zeros_like(step.drift) if begun is None else begun, turns)
 
 
-def _opening_less(step: Step, slip: Array, memory: int) -> Iterator[Array]:
-    """Give forces of friction that opens by its slip less that which was guessed.
+def _alternated(step: Step, p: Array, turns: int) -> Array:
+    """Return forces nearest to the law on the way of alternating directions from some.
 
-    What slips in the answer is the next guess (Cadoux 2009), made of the last few as Anderson
-    1965 has it. The first is what slipped in the last step. Answers are given where they are
-    nearer to the law than those before.
+    Blocks go where forces and springs let them, then each force to the nearest point of its
+    cone, in turn (Boyd and others 2011). What slips opens by mu times that, less what it last
+    slipped (Carpentier and others 2024). Springs double or halve where one lags.
     """
-    slips, changes, least = list[Array](), list[Array](), np.inf
-    for _ in range(GUESSES):
-        forces = dilating(step, slip, IN_MOTION)
-        if forces is None:
-            return
-        x = step.pushed_by(forces)
-        residual = step.residual(x, forces)
-        if residual < NEARER * least:
-            least = residual
-            yield forces
-        slips.append(slip)
-        changes.append(_slip(step.velocities(x)) - slip)
-        ways = np.diff(slips[-memory:], axis=0).T
-        turns = np.diff(changes[-memory:], axis=0).T
-        shares = np.linalg.lstsq(turns, changes[-1], rcond=1e-8)[0]
-        slip = np.maximum(slip + changes[-1] - (ways + turns) @ shares, 0.0)
+    bands, mu, stiff = step.bands, step.friction, 1.0
+    x = step.pushed_by(p)
+    factored = bands.factored(step.rows, np.full((1, 3), stiff))
+    best, least, opens = p, step.residual(x, p), np.zeros_like(p)
+    for turn in range(turns):
+        u, drift = step.velocities(x), step.drift.copy()
+        shift = mu * _slip(u)
+        u[:, 0] += shift
+        drift[:, 0] += shift
+        pushed = p - stiff * u
+        p = _nearest(pushed, mu)
+        was, opens = opens, (p - pushed) / stiff
+        if factored is None:
+            break
+        x = factored(step.free + bands.pull(step.rows, 2 * p - pushed - stiff * drift))
+        if turn % LOOKS:
+            continue
+        residual = step.residual(step.pushed_by(p), p)
+        if residual < least:
+            best, least = p, residual
+        if least <= (SOLVED if turn < LATE else LAWFUL):
+            break
+        u = step.velocities(x)
+        u[:, 0] += mu * _slip(u)
+        apart = float(np.abs(opens - u).max())
+        moved = stiff * float(np.abs(bands.pull(step.rows, opens - was)).max())
+        if apart > LAGS * moved and stiff < STIFF:
+            stiff *= 2
+        elif moved > LAGS * apart and stiff > 1 / STIFF:
+            stiff /= 2
+        else:
+            continue
+        factored = bands.factored(step.rows, np.full((1, 3), stiff))
+    return best
+
+
+def _nearest(pushed: Array, friction: Array) -> Array:
+    """Return the nearest points of the cones of friction."""
+    across = _slip(pushed)
+    within = across <= friction * pushed[:, 0]
+    along = np.maximum(pushed[:, 0] + friction * across, 0.0) / (1 + friction**2)
+    share = np.where(within, 1.0, friction * along / np.maximum(across, 1e-300))
+    pressure = np.where(within, pushed[:, 0], along)
+    return np.column_stack([pressure, share[:, None] * pushed[:, 1:]])
 
 
 def _slip(velocities: Array) -> Array:

@@ -28,13 +28,15 @@ from blocksim.engines.solid.between import (
     sides_of,
 )
 from blocksim.engines.solid.bodies import Bodies, Place
-from blocksim.engines.solid.coulomb import dilating, solve
+from blocksim.engines.solid.coulomb import TURNS, dilating, solve
 from blocksim.engines.solid.facing import frames
 from blocksim.engines.solid.meeting import Points, meet, near
 from blocksim.engines.solid.step import Step
 
 COARSE = 1e-5
 """Residual of a step that is halved."""
+BRIEFLY = 1000
+"""Most turns a step is looked for in which nothing closes: often there is none."""
 HALVINGS = 5
 """How often a step that is not solved is halved."""
 SHUT, PRESSED = 1e-6, 1e-4
@@ -200,7 +202,7 @@ class SolidBlocks:
         drift = now.along(self.bodies.root * velocities)
         drift[:, 0] += np.maximum(gaps, 0.0) / step
         every = np.ones(len(points.gaps), dtype=bool)
-        self._solve(points, friction, now, drift / step, every, middle, step, paths=True)
+        self._solve(points, friction, now, drift / step, every, middle, step, TURNS)
         if math.isfinite(self._residual):
             self._advance(step, 1.0)
 
@@ -219,8 +221,7 @@ class SolidBlocks:
         taken: NDArray[np.bool_],
         middle: Place,
         step: float,
-        *,
-        paths: bool = False,
+        turns: int = BRIEFLY,
     ) -> None:
         """Solve a step's contacts, of points that are taken; what is found is kept."""
         bodies = self.bodies
@@ -229,7 +230,7 @@ class SolidBlocks:
         asked = bodies.asked(
             now.rows[at], now.sides[at], drift[at], bodies.pull(middle) + turning, friction[at]
         )
-        found = solve(asked, self._held(points)[at], paths=paths)
+        found = solve(asked, self._held(points)[at], turns)
         self._last = np.zeros((len(points.gaps), 2, 3))
         self._last[at] = np.stack([found.forces, asked.velocities(found.x)], axis=1)
         self._keys = points.keys
