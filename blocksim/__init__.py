@@ -89,10 +89,16 @@ if TYPE_CHECKING:
     from blocksim.simulation.recording import Recording as Recording
     from blocksim.simulation.verdict import Evidence as Evidence
     from blocksim.simulation.verdict import Verdict as Verdict
+    from blocksim.sweeps.case import SweepRow as SweepRow
     from blocksim.sweeps.fragility import Fragility as Fragility
     from blocksim.sweeps.fragility import fragility as fragility
+    from blocksim.sweeps.load import load_design as load_design
+    from blocksim.sweeps.run import Summary as Summary
     from blocksim.sweeps.run import sweep as sweep
+    from blocksim.sweeps.shards import read_rows as read_rows
     from blocksim.sweeps.table import to_pandas as to_pandas
+    from blocksim.sweeps.table import write_csv as write_csv
+    from blocksim.sweeps.table import write_parquet as write_parquet
 
 _PLACES = {
     "arch.circular": ("Arch",),
@@ -124,8 +130,11 @@ _PLACES = {
     "blocks.space.joining": ("assembly_in_space",),
     "blocks.space.maker": ("SolidMaker",),
     "limit": ("collapse", "equilibrium"),
-    "sweeps.run": ("sweep",),
-    "sweeps.table": ("to_pandas",),
+    "sweeps.case": ("SweepRow",),
+    "sweeps.load": ("load_design",),
+    "sweeps.run": ("Summary", "sweep"),
+    "sweeps.shards": ("read_rows",),
+    "sweeps.table": ("to_pandas", "write_csv", "write_parquet"),
 }
 """Where public names are, besides those of kinds; each is loaded when it is first used."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import types
+from dataclasses import is_dataclass
 from inspect import getdoc
 from pathlib import Path
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints, is_typeddict
@@ -35,13 +36,15 @@ def schema() -> dict[str, Any]:
 
 def _of(hint: Any, found: dict[str, Any]) -> dict[str, Any]:
     """Return the schema of a type; those of its records are put among those found."""
-    if is_typeddict(hint):
+    if is_typeddict(hint) or is_dataclass(hint):
         name = hint.__name__.removesuffix("Record")
         if name not in found:
             found[name] = {}
-            keys = get_type_hints(hint)
+            keys, said = get_type_hints(hint), getdoc(hint) or ""
+            if is_dataclass(hint):
+                said = said.partition("\n\n")[0]
             found[name] = {
-                "description": " ".join((getdoc(hint) or "").split()),
+                "description": " ".join(said.split()),
                 "type": "object",
                 "properties": {key: _of(each, found) for key, each in keys.items()},
                 "required": list(keys),
@@ -53,7 +56,7 @@ def _of(hint: Any, found: dict[str, Any]) -> dict[str, Any]:
         return {"anyOf": [_of(each, found) for each in parts]}
     if origin is Literal:
         return {"enum": list(parts)}
-    if origin is list:
+    if origin in {list, tuple}:
         return {"type": "array", "items": _of(parts[0], found)}
     return {"type": "object"} if origin is dict else {"type": PLAIN[hint]}
 

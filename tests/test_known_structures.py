@@ -185,7 +185,7 @@ def test_structures_in_space_agree_with_their_sources() -> None:
     left_out = {each.engine: each.scenarios for each in unasked(chosen)}
     assert left_out == {"pymunk": ("tower_113", "skew_arch_crown")}
     words = " ".join(
-        " ".join(Page(report_page([ROW], MAP, {"blocksim": "0.1"}, (), found)).words).split()
+        " ".join(Page(report_page([ROW, *found], MAP, {"blocksim": "0.1"})).words).split()
     )
     assert "All 4 answers on 2 other structures agree with their sources." in words
 
@@ -225,7 +225,7 @@ def page(rows: list[StructureRow]) -> str:
         else row
         for row in rows
     ]
-    return report_page([ROW], MAP, {"blocksim": "0.1"}, (), made)
+    return report_page([ROW, *made], MAP, {"blocksim": "0.1"})
 
 
 def test_the_page_has_a_part_on_structures(page: str) -> None:
@@ -272,13 +272,13 @@ def test_pictures_are_of_the_mechanism(page: str, rows: list[StructureRow]) -> N
 
 
 def test_rows_are_written(tmp_path: Path, rows: list[StructureRow]) -> None:
-    write_results([ROW], tmp_path, (), rows, unasked([load_known("catenary")]))
+    write_results([ROW, *rows], tmp_path, unasked([load_known("catenary")]))
     document = json.loads((tmp_path / "validate.json").read_text(), parse_constant=pytest.fail)
     part = document["structures"]
     assert [row["structure"] for row in part["rows"][::3]] == list(QUICK)
     assert part["rows"][0]["value"] == pytest.approx(0.3705338738135736)
     assert part["settings"]["aside"]["direct"] == 0.001
-    assert part["not_asked"][0]["scenarios"] == ["catenary"]
+    assert document["not_asked"][0]["scenarios"] == ["catenary"]
     assert "drawn" not in part["rows"][0]
     with (tmp_path / "structures.csv").open(newline="") as file:
         lines = list(csv.DictReader(file))

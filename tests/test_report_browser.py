@@ -36,7 +36,7 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = tmp_path_factory.mktemp("report")
     known = [load_known("oppenheim_7"), load_known("box2d_tilted_stack")]
     built = validate(known, ("direct",), workers=1)
-    write_results([*rows(), LONG, replace(LONG, engine="pybullet")], folder, (), built)
+    write_results([*rows(), LONG, replace(LONG, engine="pybullet"), *built], folder)
     return (folder / "report.html").as_uri()
 
 

@@ -43,6 +43,14 @@ def test_leaning_arches_claim_what_statics_says(known: Known) -> None:
     assert known.expect[0].verdict == ("collapses" if falls else "stands")
 
 
+def test_a_lean_takes_the_place_of_another() -> None:
+    """So it does under another gravity: its strength stays."""
+    upright = ARCHES["semicircle"].problem.under(1.62)
+    twice = upright.leaning(0.5).leaning(0.2)
+    assert twice.gravity == pytest.approx(upright.leaning(0.2).gravity, rel=1e-15)
+    assert np.linalg.norm(twice.gravity) == pytest.approx(1.62 / 9.81, rel=1e-15)
+
+
 @pytest.mark.parametrize("known", ARCHES.values(), ids=ARCHES)
 def test_shipped_arches_agree_with_theory(known: Known) -> None:
     problem, (expected,) = known.problem, known.expect

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 
 import click
@@ -17,10 +16,10 @@ from blocksim.common.words import counted
 from blocksim.engines import NAMES, engine_named
 from blocksim.report.answerwords import ratio, signed
 from blocksim.report.structurewords import found_of, question_of, summary_of_structures
-from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
+from blocksim.studies.agreement import Validation, disagreements, numbered
 from blocksim.studies.chart import Point, cases, measure, on_front
 from blocksim.studies.questions import StructureRow
-from blocksim.studies.validate import structures, unasked
+from blocksim.studies.validate import parted, structures, unasked
 from blocksim.studies.validate import validate as run_validation
 
 
@@ -45,19 +44,16 @@ def validate(
     for each in engines or ():
         engine_named(each, "--methods")
     make_folder(out)
-    every = structures(quick=quick)
-    chosen = [known for known in every if known.expect[0].modes]
-    built = [known for known in every if not known.expect[0].modes]
-    left_out, built_left_out = unasked(chosen, engines), unasked(built, engines)
+    chosen = structures(quick=quick)
+    left_out = unasked(chosen, engines)
     with progress() as report:
-        found = run_validation([*chosen, *built], engines, workers=workers, progress=report)
-    rows = [row for row in found if isinstance(row, Validation)]
-    answers = [row for row in found if isinstance(row, StructureRow)]
-    paths = write_results(rows, out, left_out, answers, built_left_out)
-    show(validation_table(rows))
-    say(*validation_lines(rows, left_out))
-    show(structure_table(answers))
-    say(*structure_lines(answers, built_left_out))
+        found = run_validation(chosen, engines, workers=workers, progress=report)
+    paths = write_results(found, out, left_out)
+    arches, others = parted(found)
+    show(validation_table(arches))
+    say(*validation_lines(arches))
+    show(structure_table(others))
+    say(*structure_lines(others), *(f"not asked of {each.words}" for each in left_out))
     say("wrote " + ", ".join(str(path) for path in paths))
     raise click.exceptions.Exit(int(any(row.miss for row in found)))
 
@@ -102,7 +98,7 @@ def validation_table(rows: list[Validation]) -> Table:
     return table
 
 
-def validation_lines(rows: list[Validation], unasked: Sequence[Unasked] = ()) -> list[str]:
+def validation_lines(rows: list[Validation]) -> list[str]:
     """Return how many rows agree, what does not, and where engines differ, in words."""
     misses = [row for row in rows if row.miss]
     right = f"{len(rows) - len(misses)} of {len(rows)}"
@@ -118,7 +114,7 @@ def validation_lines(rows: list[Validation], unasked: Sequence[Unasked] = ()) ->
         places = counted(len(apart), "place") if apart else "no place"
         lines.append(f"engines contradict each other in {places}")
         lines += [f"  {each}" for each in apart]
-    return lines + [f"not asked of {each.words}" for each in unasked]
+    return lines
 
 
 def structure_table(rows: list[StructureRow]) -> Table:
@@ -135,15 +131,16 @@ def structure_table(rows: list[StructureRow]) -> Table:
     return table
 
 
-def structure_lines(rows: list[StructureRow], unasked: Sequence[Unasked] = ()) -> list[str]:
+def structure_lines(rows: list[StructureRow]) -> list[str]:
     """Return how many answers on structures agree, and what does not, in words."""
-    lines = [summary_of_structures(rows).removesuffix(".")]
-    lines += [
-        f"  {row.structure}, {question_of(row)}, {row.method}: {row.miss} ({row.note})"
-        for row in rows
-        if row.miss
+    return [
+        summary_of_structures(rows).removesuffix("."),
+        *(
+            f"  {row.structure}, {question_of(row)}, {row.method}: {row.miss} ({row.note})"
+            for row in rows
+            if row.miss
+        ),
     ]
-    return lines + [f"not asked of {each.words}" for each in unasked]
 
 
 def chart_table(points: list[Point]) -> Table:

@@ -9,6 +9,7 @@ import re
 import stat
 from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager, suppress
+from dataclasses import asdict, is_dataclass
 from errno import (
     EEXIST,
     EINVAL,
@@ -61,6 +62,8 @@ def json_text(document: object, *, indent: int | None = None) -> str:
 def _plain(value: object) -> object:
     if isinstance(value, float) and not math.isfinite(value):
         return str(float(value))
+    if is_dataclass(value) and not isinstance(value, type):
+        value = asdict(value)
     if isinstance(value, dict):
         items = cast("dict[str, object]", value).items()
         return {key: _plain(each) for key, each in items}

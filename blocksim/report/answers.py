@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from blocksim.blocks.joints import JointState, joint_names, side_name
@@ -53,7 +52,7 @@ def check_record(answer: Check[Any], carried: Carried | None = None) -> CheckRec
         "method": answer.method,
         "verdict": answer.verdict.value,
         "proved": answer.proved,
-        "evidence": [{"test": each.test, "found": each.found} for each in answer.evidence],
+        "evidence": answer.evidence,
         "reason": answer.reason,
         "problem": problem_record(problem),
         "load_factor": answer.load_factor,
@@ -76,10 +75,7 @@ def bracket_record(answer: Bracket[Any]) -> BracketRecord:
     """Return a bracket as `bracket --json` prints it."""
     said = {
         "version": __version__,
-        "evidence": [asdict(each) for each in answer.evidence],
         "problem": problem_record(answer.problem, answer.over),
-        "events": answer.events and [asdict(each) for each in answer.events],
-        "intervals": answer.intervals and [asdict(each) for each in answer.intervals],
         "arch": _arch_bracket(answer),
     }
     return _record(BracketRecord, answer, said)

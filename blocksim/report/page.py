@@ -23,7 +23,7 @@ from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
 from blocksim.studies.questions import NEAR, SLOWLY, StructureRow
-from blocksim.studies.validate import ASIDE, ERROR_BOUND
+from blocksim.studies.validate import ASIDE, ERROR_BOUND, Row, parted
 from blocksim.view import style
 
 STATES = {
@@ -36,14 +36,13 @@ STATES = {
 
 
 def report_page(
-    rows: Sequence[Validation],
+    found: Sequence[Row],
     map_svg: bytes,
     machine: Mapping[str, str],
     unasked: Sequence[Unasked] = (),
-    structures: Sequence[StructureRow] = (),
-    structures_unasked: Sequence[Unasked] = (),
 ) -> str:
     """Write the page, of one engine or several: HTML that loads nothing."""
+    rows, structures = parted(found)
     pages = environment()
     pages.filters |= {"degrees": _degrees, "friction": _friction, "capitalised": _capitalised}
     pages.filters |= {"found": found_of, "error": error_of}
@@ -72,7 +71,6 @@ def report_page(
         bound=_percent(ERROR_BOUND),
         states=STATES,
         structure_misses=[row for row in structures if row.miss],
-        structure_unasked=structures_unasked,
         **_structures(structures),
         mode_styles=style.MODES,
         modes=list(Mode),

@@ -8,15 +8,12 @@ from __future__ import annotations
 
 from typing import Any, Literal, TypedDict
 
+from blocksim.ask.ends import Stands
+from blocksim.ask.spread import Event
+from blocksim.simulation.verdict import Evidence
+
 Number = float | Literal["inf", "-inf"]
 """JSON has no infinity."""
-
-
-class EvidenceRecord(TypedDict):
-    """What was seen, by which test."""
-
-    test: str
-    found: str
 
 
 class ProblemRecord(TypedDict):
@@ -172,7 +169,7 @@ class CheckRecord(CarriedRecord):
     method: str
     verdict: Literal["stands", "collapses", "undecided"]
     proved: bool
-    evidence: list[EvidenceRecord]
+    evidence: tuple[Evidence, ...]
     reason: str
     problem: ProblemRecord
     load_factor: Number | None
@@ -187,38 +184,6 @@ class CheckRecord(CarriedRecord):
     splits: int | None
     wall_s: float
     arch: ArchRecord | None
-
-
-class OpenJointRecord(TypedDict):
-    """A joint that is open as supports move."""
-
-    a: str
-    b: str
-    state: str
-
-
-class EventRecord(TypedDict):
-    """What happens as supports move, and the joints that are open after it."""
-
-    value: float
-    what: str
-    joints: list[OpenJointRecord]
-
-
-class EndRecord(TypedDict):
-    """An end of an interval in which it stands."""
-
-    limit: float
-    falls: float | None
-    stands: float | None
-    confirmed: bool | None
-
-
-class IntervalRecord(TypedDict):
-    """An interval in which it stands; an end is null where it goes on beyond the range."""
-
-    low: EndRecord | None
-    high: EndRecord | None
 
 
 class BracketRecord(TypedDict):
@@ -237,11 +202,11 @@ class BracketRecord(TypedDict):
     runs: int
     undecided: int
     tol: float
-    evidence: list[EvidenceRecord]
+    evidence: tuple[Evidence, ...]
     reason: str
     problem: ProblemRecord
-    events: list[EventRecord] | None
-    intervals: list[IntervalRecord] | None
+    events: tuple[Event, ...] | None
+    intervals: tuple[Stands, ...] | None
     blocks: int | None
     splits: int | None
     wall_s: float

@@ -20,7 +20,7 @@ from blocksim.report.inlinemap import PAGE
 from blocksim.report.page import report_page
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
 from blocksim.studies.questions import NEAR, SLOWLY, StructureRow
-from blocksim.studies.validate import ASIDE, ERROR_BOUND
+from blocksim.studies.validate import ASIDE, ERROR_BOUND, Row, parted
 from blocksim.view.drawing import save_figure
 from blocksim.view.mapfigure import MapPoint, map_figure
 
@@ -71,17 +71,14 @@ def processor() -> str:
 
 
 def write_results(
-    rows: Sequence[Validation],
-    folder: AnyPath,
-    unasked: Sequence[Unasked] = (),
-    structures: Sequence[StructureRow] = (),
-    structures_unasked: Sequence[Unasked] = (),
+    found: Sequence[Row], folder: AnyPath, unasked: Sequence[Unasked] = ()
 ) -> list[Path]:
     """Write report.html, validate.json, validate.csv, map.png and map.svg into a folder.
 
+    `found`: Where some are on structures, structures.csv is written, too.
     `unasked`: What was not asked, and why; said in the page and in the JSON.
-    `structures`: Of the second part; where there are some, structures.csv is written, too.
     """
+    rows, structures = parted(found)
     records = [as_record(row) for row in rows]
     built = [structure_record(row) for row in structures]
     asked = [row.engine for row in rows] + [row.method for row in structures]
@@ -99,14 +96,11 @@ def write_results(
         "structures": {
             "settings": {"aside": asides, "near": NEAR, "slowly": SLOWLY},
             "rows": built,
-            "not_asked": [asdict(each) for each in structures_unasked],
         },
     }
     figure = map_figure(_points(rows), title="Simulated arches on the analytical mode map")
     drawn = pictures("map", figure)
-    page = report_page(
-        rows, drawn["map.svg"], machine(), unasked, structures, structures_unasked
-    )
+    page = report_page(found, drawn["map.svg"], machine(), unasked)
     contents = {
         PAGE: page.encode(),
         "validate.json": as_json(document),

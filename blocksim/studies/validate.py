@@ -136,6 +136,15 @@ def validate(
     return answered(Question.answer, jobs, workers, progress)
 
 
+def parted(found: Iterable[Row]) -> tuple[list[Validation], list[StructureRow]]:
+    """Return rows on arches of which modes are known, and all others."""
+    rows = [*found]
+    return (
+        [row for row in rows if isinstance(row, Validation)],
+        [row for row in rows if isinstance(row, StructureRow)],
+    )
+
+
 def validate_one(
     known: Known, expected: ExpectEntry, engine: str, tol: float | None = None
 ) -> Validation:

@@ -23,7 +23,7 @@ def which_stand(
     voussoirs: int,
     weight: Weight = "centreline",
 ) -> NDArray[np.bool_]:
-    """Tell which arches have an equilibrium within strength, as `stands` does for one.
+    """Tell which arches have an equilibrium within strength (static theorem).
 
     `half_angle`, (...): In (0, pi) [rad].
     `eta`, (...): In (0, 2].

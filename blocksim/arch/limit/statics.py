@@ -175,11 +175,6 @@ def _gap(bounds: tuple[Bound, Bound]) -> float:
     return lower.short - upper.short
 
 
-def stands(arch: Arch, mu: float) -> bool:
-    """Tell whether the arch has an equilibrium within strength (static theorem)."""
-    return _gap(bounds_of(arch, mu)) >= 0
-
-
 def slack(arch: Arch, mu: float) -> float:
     """Share of thickness and of friction that can be taken away before the arch falls.
 
