@@ -9,9 +9,8 @@ widest. The half-angle is the same at intrados, centreline and extrados.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 from blocksim.arch.circular import Arch
 from blocksim.blocks.problem import STANDARD_GRAVITY
@@ -68,58 +67,46 @@ class Line:
         share = 1 + OFFSET[self.at] * eta
         return self.radius / share if share else math.inf
 
+    def around(self, thickness: float) -> float:
+        """Radius of the centreline of an arch of a thickness [m]."""
+        MEASURE.require("thickness", thickness)
+        inside = OFFSET[self.at] + 0.5
+        allowed = f"at most {self.radius / (inside or 1.0):.6g} m, which is eta = 2"
+        fits = inside * thickness <= self.radius * ALMOST
+        require(fits, "thickness", thickness, allowed)
+        return self.radius - OFFSET[self.at] * thickness
 
-@dataclass(frozen=True, kw_only=True)
-class Dimensions:
-    """Span, rise and thickness of an arch.
+    def require_measured(self, thickness: float | None) -> None:
+        """Raise `InputError` for dimensions that nobody has measured, as of a wrong unit.
 
-    `span`, `rise`: Of one of its lines [m].
-    `thickness`: [m]
-    `at`, {"intrados", "centreline", "extrados"}: Which line was measured.
-    """
-
-    span: float
-    rise: float
-    thickness: float
-    at: At = "intrados"
-
-    def __post_init__(self) -> None:
-        """Check the ranges."""
-        MEASURE.require("thickness", self.thickness)
-        radius, inside = self.line.radius, OFFSET[self.at] + 0.5
-        allowed = f"at most {radius / (inside or 1.0):.6g} m, which is eta = 2"
-        fits = inside * self.thickness <= radius * ALMOST
-        require(fits, "thickness", self.thickness, allowed)
-
-    @property
-    def line(self) -> Line:
-        """The line that was measured."""
-        return Line(span=self.span, rise=self.rise, at=self.at)
-
-    @property
-    def half_angle(self) -> float:
-        """Half-angle of embrace alpha [rad]."""
-        return self.line.half_angle
-
-    @property
-    def radius(self) -> float:
-        """Radius r of the centreline [m]."""
-        return self.line.radius - OFFSET[self.at] * self.thickness
-
-    @property
-    def eta(self) -> float:
-        """Thickness-to-radius ratio t/r."""
-        return min(2.0, self.thickness / self.radius)
+        `thickness`: Where it is known [m].
+        """
+        span, rise = self.span, self.rise
+        for field, value in (("span", span), ("rise", rise), ("thickness", thickness)):
+            if value is not None:
+                LENGTH.require(field, value)
+        millimetres = f"at most {LONGEST:g} m (in mm it would be {span / 1000:g} m)"
+        require(span <= LONGEST, "span", span, millimetres)
+        closed = (
+            f"at most the span, {span:g} m (a horseshoe beyond that: by its half-angle and eta)"
+        )
+        require(rise <= span, "rise", rise, closed)
+        flattest = span / 2 * math.tan(HALF_ANGLE.low / 2)
+        flat = f"at least {flattest:.6g} m for this span: what is flatter is no arch"
+        require(rise >= flattest, "rise", rise, flat)
+        if thickness is not None:
+            radius = self.around(thickness)
+            thick = f"at most the mean radius, {radius:.6g} m, which is eta = 1 (is it in m?)"
+            require(thickness <= radius, "thickness", thickness, thick)
 
 
-def dimensions_of(arch: Arch, at: At = "intrados") -> Dimensions:
-    """Return the dimensions of an arch at one of its lines."""
+def line_of(arch: Arch, at: At = "intrados") -> Line:
+    """Return one of the lines of an arch."""
     radius = arch.radius + OFFSET[at] * arch.thickness
     require(radius > 0, "eta", arch.eta, "below 2: the intrados is a point")
-    return Dimensions(
+    return Line(
         span=2 * radius * math.sin(arch.half_angle),
         rise=2 * radius * math.sin(arch.half_angle / 2) ** 2,
-        thickness=arch.thickness,
         at=at,
     )
 
@@ -132,32 +119,6 @@ def friction_of(angle: float) -> float:
 def friction_angle(mu: float) -> float:
     """Return the angle of a friction coefficient in degrees."""
     return math.degrees(math.atan(mu))
-
-
-def require_measured(given: Mapping[str, Any]) -> None:
-    """Raise `InputError` for dimensions that nobody has measured, as of a wrong unit.
-
-    `given`: `span`, `rise`, and `thickness` and `at` where they are known.
-    """
-    line = Line(**{name: given[name] for name in ("span", "rise", "at") if name in given})
-    span, rise, thickness = line.span, line.rise, given.get("thickness")
-    for field, value in (("span", span), ("rise", rise), ("thickness", thickness)):
-        if value is not None:
-            LENGTH.require(field, value)
-    millimetres = f"at most {LONGEST:g} m (in mm it would be {span / 1000:g} m)"
-    require(span <= LONGEST, "span", span, millimetres)
-    closed = (
-        f"at most the span, {span:g} m (a horseshoe beyond that: by its half-angle and eta)"
-    )
-    require(rise <= span, "rise", rise, closed)
-    flattest = span / 2 * math.tan(HALF_ANGLE.low / 2)
-    flat = f"at least {flattest:.6g} m for this span: what is flatter is no arch"
-    require(rise >= flattest, "rise", rise, flat)
-    if thickness is None:
-        return
-    radius = Dimensions(span=span, rise=rise, thickness=thickness, at=line.at).radius
-    thick = f"at most the mean radius, {radius:.6g} m, which is eta = 1 (is it in m?)"
-    require(thickness <= radius, "thickness", thickness, thick)
 
 
 def require_unit_weight(field: str, value: float) -> None:

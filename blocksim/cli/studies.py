@@ -15,7 +15,7 @@ from blocksim.common.files import make_folder
 from blocksim.common.words import counted
 from blocksim.engines import NAMES, engine_named
 from blocksim.report.answerwords import ratio, signed
-from blocksim.report.structurewords import found_of, question_of, summary_of_structures
+from blocksim.report.structurepart import found_of, question_of, summary_of_structures
 from blocksim.studies.agreement import Validation, disagreements, numbered
 from blocksim.studies.chart import Point, cases, measure, on_front
 from blocksim.studies.questions import StructureRow

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 import numpy as np
 
 from blocksim.arch.circular import Arch, Weight
-from blocksim.arch.dimensions import LINES, Dimensions, Line, require_measured
+from blocksim.arch.dimensions import LINES, Line
 from blocksim.arch.limit import least_thickness
 from blocksim.blocks.assembly import Assembly
 from blocksim.blocks.made import Built
@@ -168,10 +168,9 @@ class CircularArch(CurvedArch):
         if self.ratio is not None:
             self._derive("eta", self.ratio * self._least(self.ratio))
         if line is not None:
-            own = {"thickness": self.thickness} if self.eta is None else {}
-            require_measured(vars(line) | own)
-            size = Dimensions(**vars(line), thickness=self.thickness)
-            radius = size.radius if self.eta is None else line.mean_radius(self.eta)
+            line.require_measured(self.thickness if self.eta is None else None)
+            eta = self.eta
+            radius = line.around(self.thickness) if eta is None else line.mean_radius(eta)
             self._derive("radius", radius)
         if self.eta is not None:
             ETA.require("eta", self.eta)

@@ -17,8 +17,12 @@ from blocksim.report.answerwords import ratio
 from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_map
 from blocksim.report.motion import joints_of, recorded_drawing
-from blocksim.report.structurepart import shown_structures
-from blocksim.report.structurewords import error_of, found_of, summary_of_structures
+from blocksim.report.structurepart import (
+    error_of,
+    found_of,
+    shown_structures,
+    summary_of_structures,
+)
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered

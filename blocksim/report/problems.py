@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from blocksim.arch.circular import Arch
-from blocksim.arch.dimensions import At, Line, dimensions_of, friction_angle
+from blocksim.arch.dimensions import At, Line, friction_angle, line_of
 from blocksim.blocks.acting import tilt_and_lean
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.road import fill_of
@@ -87,7 +87,7 @@ def _fixed_sizes(problem: Problem[Any], over: str) -> dict[str, object]:
 
 def size_record(arch: Arch) -> dict[str, object]:
     """Return dimensions of an arch for JSON; at eta = 2 the intrados has no span and rise."""
-    clear = dimensions_of(arch) if arch.eta < 2 else None
+    clear = line_of(arch) if arch.eta < 2 else None
     return {
         "span_m": clear and clear.span,
         "rise_m": clear and clear.rise,
@@ -137,7 +137,7 @@ def arch_size_lines(arch: Arch, mu: float | None = None, at: At | None = None) -
     unit, at = ("m" if metric else "r"), at or "intrados"
     said: list[str] = []
     if arch.eta < 2 or at != "intrados":
-        found = dimensions_of(arch, at)
+        found = line_of(arch, at)
         said.append(f"span {found.span:.6g} {unit}, rise {found.rise:.6g} {unit} ({at})")
     said.append(f"thickness {arch.thickness:.6g} {unit}")
     if metric:
