@@ -82,7 +82,7 @@ def test_the_worst_place_of_a_wheel_is_found_not_sampled() -> None:
 
 
 @pytest.mark.long
-def test_ten_bridges_agree_with_a_scan_of_five_thousand_places() -> None:
+def test_four_bridges_agree_with_a_scan_of_five_thousand_places() -> None:
     """Of five thousand places none is worse, by few programmes that bound them all.
 
     A wheel's force and moment on one voussoir are linear in its place x, and the forces that
@@ -91,7 +91,7 @@ def test_ten_bridges_agree_with_a_scan_of_five_thousand_places() -> None:
     voussoir it is at most the chord, which some places drawn at random are held to.
     """
     draw = np.random.default_rng(5000)
-    for bridge in bridges(10):
+    for bridge in bridges(4):
         tops = bridge.high[:, 0]
         ends = np.stack([tops[:-1] + NEAR, tops[1:] - NEAR], axis=1)
         asks = [[1 / at(bridge, (x,), (10,)) for x in pair] for pair in ends.tolist()]
@@ -177,24 +177,24 @@ KINDS = [
 ]
 
 
-@pytest.mark.parametrize("subject", KINDS, ids=lambda each: each[0])
-def test_every_kind_is_crossed(subject: tuple[str, ...]) -> None:
-    """At the worst place the load factor is that of the same axles as point loads beside it."""
-    done = inside(
-        "bracket", *subject, "--mu", "0.7", "--unit-weight", "20", "--vehicle", "5@0", "--json"
-    )
+def is_as_bad_as_said(*subject: str) -> None:
+    """At the worst place the load factor is that of the same axle as point loads beside it."""
+    done = inside("bracket", *subject, "--vehicle", "5@0", "--json")
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
     (x,) = found["worst"]["axles_m"]
     factors = []
     for place in (x - 1e-7, x + 1e-7):
-        said = inside(
-            *("bracket", *subject, "--mu", "0.7", "--unit-weight", "20", "--over", "load"),
-            *("--point-load", repr(place), "5", "--json"),
-        )
+        point = ("--point-load", repr(place), "5")
+        said = inside("bracket", *subject, "--over", "load", *point, "--json")
         if said.returncode == 0:
             factors.append(json.loads(said.stdout)["limit"])
     assert min(factors) == pytest.approx(found["high"], rel=1e-5)
+
+
+@pytest.mark.parametrize("subject", KINDS, ids=lambda each: each[0])
+def test_every_kind_is_crossed(subject: tuple[str, ...]) -> None:
+    is_as_bad_as_said(*subject, "--mu", "0.7", "--unit-weight", "20")
 
 
 def test_files_are_written_in_one_call(tmp_path: Path) -> None:

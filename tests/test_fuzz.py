@@ -26,7 +26,7 @@ from strangers import ATTACKS, Attack, corpus, good
 
 ROOT = Path(__file__).parent.parent
 CODES = {0, 1, 2, 3}
-MINUTES = float(os.environ.get("BLOCKSIM_FUZZ_MINUTES", "1"))
+MINUTES = float(os.environ.get("BLOCKSIM_FUZZ_MINUTES", "0.5"))
 AT_ONCE = 40
 """Attacks of one kind before the next."""
 

@@ -100,14 +100,15 @@ def test_while(work: str, tmp_path: Path) -> None:
 
 MOMENT = ("sweep", 0.5, signal.SIGINT)
 """Of `validate` there is one below, with workers that are at work."""
+OTHERS = [
+    *(("validate", delay, sent) for delay, sent in zip((0.0, 0.1), CODES, strict=True)),
+    *(("sweep", delay, sent) for delay, sent in product((0.0, 0.5), CODES)),
+]
 
 
 @pytest.mark.parametrize(
     ("command", "delay", "sent"),
-    [
-        pytest.param(*each, marks=[] if each == MOMENT else pytest.mark.long)
-        for each in product(("validate", "sweep"), (0.0, 0.1, 0.5), CODES)
-    ],
+    [pytest.param(*each, marks=[] if each == MOMENT else pytest.mark.long) for each in OTHERS],
 )
 def test_while_workers_start(
     command: str, delay: float, sent: signal.Signals, tmp_path: Path

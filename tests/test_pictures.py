@@ -101,13 +101,3 @@ def test_a_still_has_the_height_asked_for(
         for height in (240, 480)
     )
     assert np.abs(small.astype(float) - large).mean() < 4
-
-
-def test_lines_have_no_pixels(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for asked, words in (
-        (("semicircle", "--out", "x.svg", "--height", "480"), "a .svg has no pixels"),
-        (("semicircle", "--out", "x.png", "--height", "100"), "an even number from 180"),
-        (("stack.json", "--out", "x.png", "--height", "481"), "an even number from 180"),
-    ):
-        assert words in run(folder, monkeypatch, "render", *asked)
-    assert not [*folder.glob("x.*")]
