@@ -11,7 +11,6 @@ from own_bridge import Bridge
 from running import inside
 
 import blocksim
-from blocksim import InputError
 
 WIDE, HIGH, DEEP, HEAVY = 0.6, 1.0, 0.5, 20e3
 
@@ -175,9 +174,3 @@ def test_the_strength_that_is_needed_is_of_any_size(heavy: float) -> None:
     column = blocksim.Column(drums=10, drum_height=1.5, width=1, friction=0.5, density=heavy)
     needed = blocksim.check(replace(column.problem(), strength=1e9)).needed
     assert needed.high == pytest.approx(15 * heavy, rel=1e-6)
-
-
-def test_a_strength_that_is_none_is_refused() -> None:
-    """In one line that names it."""
-    with pytest.raises(InputError, match="strength"):
-        _factor(_pushed((1.0, 0.0), (0.0, HIGH)), -1.0)

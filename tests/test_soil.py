@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ from test_crossing import is_as_bad_as_said
 
 from blocksim import CircularArch
 from blocksim.blocks.road import with_fill, with_soil
-from blocksim.blocks.soil import Soil, coefficients, resistance
+from blocksim.blocks.soil import Soil
 
 BRIDGE = Bridge(span=8.0, rise=3.0, thick=0.45, count=30, fill=0.5, heavy_fill=18.0)
 """A joint at the crown: no voussoir has soil on both of its sides."""
@@ -215,9 +214,3 @@ def test_a_vehicle_crosses_a_drawn_wall_under_fill(
     place.write_text(json.dumps({**WEDGE, "blocks": [WEDGE["blocks"][0], head]}))
     fill = ("--fill", "1", "--fill-unit-weight", "18")
     is_as_bad_as_said(str(place), *fill, *dispersal)
-
-
-def test_numbers_of_rankine_and_jaky() -> None:
-    angle = math.radians(ANGLE)
-    assert coefficients("at-rest,active", angle) == pytest.approx((0.5, ACTIVE))
-    assert resistance("0.5", angle) == pytest.approx((1.5, 1.5))
