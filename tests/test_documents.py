@@ -290,7 +290,7 @@ def test_tables_in_pages_are_as_code_and_rows_say(name: str) -> None:
     assert [name_of(page) for page in pages if made not in page.read_text("utf-8")] == []
 
 
-@pytest.mark.parametrize("which", ["structure", "scenario", "design"])
+@pytest.mark.parametrize("which", ["structure", "design"])
 def test_every_key_of_a_file_is_described(which: str) -> None:
     table = module("tables").made(f"format {which}")
     rows = re.findall(r"^\| (`\w+`) .* \| ([^|]*) \|$", table, flags=re.MULTILINE)
