@@ -33,14 +33,14 @@ def arch_of(given: Given, *, thick: bool = False, **needed: object) -> CircularA
     """
     measured = given.measured
     sizes, thickness = (("span", "rise"), "thickness") if measured else (("alpha",), "eta")
-    thick_enough = {thickness: getattr(given, thickness)} if thick else {}
-    if given.ratio is not None:
-        thick_enough = {}
-    mu = given.mu if given.friction_angle is None else given.friction_angle
-    by_angle = not measured and given.alpha is None
-    instead = IN_METRES if by_angle else instead_of(mu, **thick_enough)
     shape = {name: getattr(given, name) for name in sizes}
-    require_given(instead, **needed, **shape, mu=mu, **thick_enough)
+    lacking = {thickness: None} if thick and not is_thick(given) else {}
+    mu = given.mu if given.friction_angle is None else given.friction_angle
+    others = [*(["--friction-angle"] if mu is None else []), *(["--ratio"] if lacking else [])]
+    instead = f" (or {', '.join(others)})" if others else ""
+    if not measured and given.alpha is None:
+        instead = IN_METRES
+    require_given(instead, **needed, **shape, mu=mu, **lacking)
     refuse(given.drawn, why="left out: it is of drawings, and this is an arch")
     refuse({"parameters": given.parameters}, why="left out: it is for kinds of structures")
     _require_degrees(given.alpha)
@@ -74,13 +74,6 @@ def arch_asked(
     with named_options():
         lean = given.lean
         return problem if lean is None else problem.leaning(math.radians(lean))
-
-
-def instead_of(friction: float | None, **thickness: float | None) -> str:
-    """Say what may be given in the place of friction or of a thickness that is missing."""
-    others = [] if friction is not None else ["--friction-angle"]
-    others += ["--ratio" for value in thickness.values() if value is None]
-    return f" (or {', '.join(others)})" if others else ""
 
 
 def _require_degrees(alpha: float | None) -> None:
