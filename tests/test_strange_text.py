@@ -22,9 +22,10 @@ from hypothesis import strategies as st
 from running import inside
 
 from blocksim import load_recording, load_structure, structure_of
+from blocksim.common.files import json_text
 from blocksim.common.sheets import sheet_of
 from blocksim.common.words import printable
-from blocksim.report.chart import read_points, write_points
+from blocksim.report.chart import read_points
 from blocksim.studies.chart import Point
 from blocksim.view.chartfigure import chart_figures
 from blocksim.view.explorer import explorer_page
@@ -249,7 +250,7 @@ def test_points_of_other_programs(text: str, tmp_path: Path) -> None:
         undecided=0, work=1.0, **times,
     )  # fmt: skip
     path = tmp_path / "points.json"
-    write_points([point], path)
+    path.write_text(json_text({"points": [point]}))
     read = read_points(path)
     assert not obeys(read[0].case + read[0].method)
     for figure in chart_figures(read).values():

@@ -16,9 +16,10 @@ from worlds import Simulation
 from blocksim import Arch, CircularArch, InputError, Verdict
 from blocksim.ask.methods import METHODS
 from blocksim.cli.studies import chart_table
+from blocksim.common.files import json_text
 from blocksim.engines import ENGINES
 from blocksim.report import chart
-from blocksim.report.chart import read_points, write_chart, write_points
+from blocksim.report.chart import read_points, write_chart
 from blocksim.simulation.motion import QUIET
 from blocksim.studies import refinement
 from blocksim.studies.chart import ChartArch, Point, front, measure
@@ -161,7 +162,7 @@ def test_each_knob_is_drawn_and_what_has_no_bracket_too(tmp_path: Path) -> None:
 def test_points_of_another_program_are_drawn_beside(tmp_path: Path) -> None:
     foreign = [point("elsewhere", 1e-3, 2.0), point("elsewhere", math.inf, 1.0)]
     path = tmp_path / "points.json"
-    write_points(foreign, path)
+    path.write_text(json_text({"points": foreign}))
     assert read_points(path) == foreign
     write_chart([*POINTS, *read_points(path)], tmp_path)
     assert "elsewhere" in (tmp_path / "chart.json").read_text()

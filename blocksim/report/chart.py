@@ -30,12 +30,6 @@ def write_chart(points: Sequence[Point], folder: AnyPath) -> list[Path]:
     return write_folder(folder, contents)
 
 
-def write_points(points: Sequence[Point], path: AnyPath) -> None:
-    """Write points as JSON, as `read_points` takes them."""
-    path = Path(path)
-    write_folder(path.parent, {path.name: _document(points)})
-
-
 def _document(points: Sequence[Point]) -> bytes:
     by_time, by_work = on_front(points), on_front(points, "work")
     records = [
@@ -63,7 +57,7 @@ def _document(points: Sequence[Point]) -> bytes:
 
 
 def read_points(path: AnyPath) -> list[Point]:
-    """Read points of another run or program, written by `write_points`.
+    """Read points of another run or program, written as in chart.json.
 
     Files of before there were knobs are read, too: a tolerance `tol`, and `seconds` by the
     clock, which are taken for the processor's. The ends of brackets need not be told.
