@@ -11,7 +11,7 @@ import pytest
 
 from blocksim import CircularArch, EllipticArch, Portal, Problem, check, load
 from blocksim.ask.families import family_of
-from blocksim.view.placing import distance_of
+from blocksim.blocks.outlines import distances
 from blocksim.view.sheet import answer_sheet
 from blocksim.view.sheetfigure import sheet_figure
 
@@ -25,8 +25,9 @@ def test_faces_that_left_each_other_are_apart_either_way(
     way: tuple[float, float], apart: float
 ) -> None:
     """A face of 1 m, moved off, along itself, and beyond its end."""
-    face = np.array([[[0.0, 0.0], [1.0, 0.0]]])
-    assert distance_of(face, face + way)[0] == pytest.approx(apart, abs=1e-12)
+    face = np.array([[0.0, 0.0], [1.0, 0.0]])
+    for found in (distances(face + way, face), distances(face, face + way)):
+        assert found.min() == pytest.approx(apart, abs=1e-12)
 
 
 def test_supports_that_have_spread_bear_the_blocks_where_they_are() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.outlines import following, moments
+from blocksim.blocks.outlines import distances, following, moments
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.touching import Touch
 from blocksim.common.checks import require
@@ -208,17 +208,11 @@ def _touches(
 
 def _face(outlines: Sequence[Array], ends: Array) -> _Near:
     """Return the face nearest to a joint, and how far the joint's farther end is off it."""
-    start = np.concatenate(outlines)
-    finish = np.concatenate([following(outline) for outline in outlines])
-    way = finish - start
-    square = (way * way).sum(axis=1)
-    off = np.zeros(len(start))
-    for end in ends:
-        arm = end - start
-        share = np.clip((arm * way).sum(axis=1) / square, 0, 1)
-        off = np.maximum(off, np.hypot(*(arm - share[:, None] * way).T))
+    each = [np.stack([outline, following(outline)], axis=1) for outline in outlines]
+    sides = np.concatenate(each)
+    off = distances(ends[:, None], sides).max(axis=0)
     best = int(off.argmin())
-    return float(off[best]), np.stack([start[best], finish[best]])
+    return float(off[best]), sides[best]
 
 
 def _outward(face: Array) -> Array:

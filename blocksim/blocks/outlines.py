@@ -43,6 +43,15 @@ def before(corners: Array) -> Array:
     return np.concatenate([corners[-1:], corners[:-1]])
 
 
+def distances(points: Array, ends: Array) -> Array:
+    """Return how far points (..., 2) are from straight lines between two ends (..., 2, 2)."""
+    start, way = ends[..., 0, :], ends[..., 1, :] - ends[..., 0, :]
+    arm, square = points - start, (way * way).sum(axis=-1)
+    share = np.clip((way * arm).sum(axis=-1) / np.where(square > 0, square, 1.0), 0.0, 1.0)
+    off = arm - share[..., None] * way
+    return np.hypot(off[..., 0], off[..., 1])
+
+
 def step_of(values: Array) -> float:
     """Return the step to which numbers are rounded, by their decimals; 0 if they have many."""
     if not len(values):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.outlines import following
+from blocksim.blocks.outlines import distances, following
 
 NEARLY = 100.0
 """A gap up to this many exact tolerances is nearly a joint: said, but none. So is a length."""
@@ -120,7 +120,7 @@ def touches(
     for later in range(int((last - first).max(initial=0))):
         here = np.flatnonzero(touching & (first + later < last))
         on = ends[first[here] + later]
-        touching[here[_off(faces.start[corner[here]], on) <= 2 * close[here]]] = False
+        touching[here[distances(faces.start[corner[here]], on) <= 2 * close[here]]] = False
     missed = np.concatenate([
         np.sort(faces.body[near], axis=1),
         bodies[(np.abs(gap) > close) & (first == last)],
@@ -234,14 +234,6 @@ def _corner_touch(faces: Faces, corner: int, face: int, gap: float) -> Touch:
         np.array([tangent[1], -tangent[0]]),
         gap,
     )
-
-
-def _off(points: Array, ends: Array) -> Array:
-    """Distances of points from stretches, shape (points,)."""
-    way, arm = ends[:, 1] - ends[:, 0], points - ends[:, 0]
-    square = (way * way).sum(axis=1)
-    share = np.clip((way * arm).sum(axis=1) / np.where(square > 0, square, 1.0), 0, 1)
-    return np.hypot(*(arm - share[:, None] * way).T)
 
 
 def merged(found: Sequence[Touch], slack: Slack) -> list[Touch]:

@@ -293,29 +293,19 @@ class Displaced:
     def _apart(self, frame: Frame) -> tuple[Array, Array]:
         """How far closed contacts are apart, and the rates of that."""
         poses, arms = self._arms_at(frame)
-        points = poses[:, :, None, :2] + arms
-        left: list[float] = []
-        rows: list[Array] = []
-        for index, closed in enumerate(frame.closed.tolist()):
-            if not any(closed):
-                continue
-            end = 0 if closed[0] else 1
-            for axis in (0, 1):
-                row = np.zeros((self._count + self._supports, PLANAR))
-                for side, sign in ((1, 1.0), (0, -1.0)):
-                    body = self._sides[index, side]
-                    arm = arms[index, side, end]
-                    row[body, axis] = sign
-                    row[body, 2] = sign * (-arm[1] if axis == 0 else arm[0])
-                rows.append(row)
-                left.append(points[index, 1, end, axis] - points[index, 0, end, axis])
-            if all(closed):
-                row = np.zeros((self._count + self._supports, PLANAR))
-                row[self._sides[index, 1], 2], row[self._sides[index, 0], 2] = 1.0, -1.0
-                rows.append(row)
-                left.append(float(poses[index, 1, 2] - poses[index, 0, 2]))
-        whole = np.array(rows)[:, : self._count].reshape(len(rows), -1)
-        return np.array(left), whole
+        every = np.arange(len(poses))
+        # Of each joint the place of one end that is closed, and its rotation.
+        arms = arms[every, :, np.where(frame.closed[:, 0], 0, 1)]
+        places = np.concatenate([poses[..., :2] + arms, poses[..., 2:]], axis=-1)
+        rates = np.broadcast_to(np.eye(PLANAR), (*arms.shape[:2], PLANAR, PLANAR)).copy()
+        rates[..., :2, 2] = arms[..., ::-1] * [-1, 1]
+        rows = np.zeros((len(poses), PLANAR, self._count + self._supports, PLANAR))
+        rows[every, :, self._sides[:, 1]] = rates[:, 1]
+        rows[every, :, self._sides[:, 0]] = -rates[:, 0]
+        one, both = frame.closed.any(axis=1), frame.closed.all(axis=1)
+        held = np.stack([one, one, both], axis=1)
+        whole = rows[held][:, : self._count].reshape(held.sum(), -1)
+        return (places[:, 1] - places[:, 0])[held], whole
 
 
 def _turned(arm: Array, turn: Array | float) -> Array:

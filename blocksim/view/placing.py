@@ -106,16 +106,3 @@ def depth_of(points: Array, outline: Array) -> Array:
     # A corner given twice makes a side without length, which bounds nothing.
     bounds = length > 0
     return np.where(bounds, height / np.where(bounds, length, 1.0), np.inf).min(axis=-1)
-
-
-def distance_of(one: Array, other: Array) -> Array:
-    """Distance of sides that do not cross, (sides, 2, 2): that of an end of one."""
-    found = np.full(len(one), np.inf)
-    for ends, side in ((one, other), (other, one)):
-        along = side[:, 1] - side[:, 0]
-        square = (along**2).sum(axis=-1)
-        arm = ends - side[:, :1]
-        share = (arm * along[:, None]).sum(axis=-1) / np.where(square > 0, square, 1.0)[:, None]
-        off = arm - np.clip(share, 0.0, 1.0)[..., None] * along[:, None]
-        found = np.minimum(found, np.linalg.norm(off, axis=-1).min(axis=-1))
-    return found

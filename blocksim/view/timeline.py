@@ -15,9 +15,10 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, classify
+from blocksim.blocks.outlines import distances
 from blocksim.simulation.motion import AT_REST, FRAME, UNMOVED, UNSEEN
 from blocksim.simulation.recording import Recording
-from blocksim.view.placing import UPRIGHT, Frames, Placing, distance_of, upright
+from blocksim.view.placing import UPRIGHT, Frames, Placing, upright
 
 SAMPLES = 500
 """Most frames that are looked at for what a film needs to know beforehand."""
@@ -188,7 +189,7 @@ class SeenJoints:
             faces = self._placing.faces(frame, frame, 0.0)[..., :2]
             # Turned far, blocks may have left each other though neither end seems open.
             apart = np.array([joint.state is JointState.OPEN for joint in seen])
-            apart |= distance_of(faces[:, 0], faces[:, 1]) > SEEN
+            apart |= distances(faces, faces[:, ::-1, None]).min(axis=(1, 2)) > SEEN
             parted = np.minimum(parted, np.where(apart, time, np.inf))
             held = np.zeros(blocks + 1, dtype=bool)
             for side in (before, after):

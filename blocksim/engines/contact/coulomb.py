@@ -127,14 +127,6 @@ class Friction:
         """Tell which contacts slide with friction that is an unknown of its own."""
         return self.steep & (contacts >= SLIDES_UP)
 
-    def as_said(self, glued: Array, contacts: Contacts, held: Array) -> Array:
-        """Return forces of contacts that do as said, with what friction is known by itself.
-
-        `contacts`, (joints, 2): What they do.
-        `held`, (joints, 2): Size of their friction; looked at where they slide.
-        """
-        return ContactStatus(self, contacts).forces(glued, held)
-
 
 class ContactStatus:
     """Contacts that do as said: what makes forces of those of springs.

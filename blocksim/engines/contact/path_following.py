@@ -37,6 +37,7 @@ from blocksim.engines.contact.coulomb import (
     SLIDES_UP,
     STICKS,
     Contacts,
+    ContactStatus,
     beyond,
     edges,
     leaning,
@@ -90,7 +91,7 @@ def path_from_guess(step: Step, guess: Answer, most: int = NEAR_PIECES) -> Answe
     x, contacts, velocities = guess.x, guess.contacts.copy(), step.velocities(guess.x)
     held = np.abs(guess.forces[:, 2:])
     pressed = np.maximum(guess.forces, [0.0, 0.0, -math.inf, -math.inf])
-    forces = step.friction.as_said(pressed, contacts, held)
+    forces = ContactStatus(step.friction, contacts).forces(pressed, held)
     normal, slip = velocities[:, :2], velocities[:, 2:]
     against = np.select(
         [contacts == STICKS, contacts == SLIDES_UP, contacts == SLIDES_DOWN],
