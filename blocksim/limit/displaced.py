@@ -133,8 +133,7 @@ class Displaced:
     def _gaps(self, frame: Frame) -> Array:
         """How far apart the ends of joints are, (joints, 2); inf of those that cannot close."""
         points = self._points(frame)
-        poses = np.vstack([frame.poses, self._placed(frame.value)])
-        normal = _turned(self._axes.T, poses[self._sides[:, 0], 2]).T
+        normal = _turned(self._axes.T, self._arms_at(frame)[0][:, 0, 2]).T
         gap = ((points[:, 1] - points[:, 0]) * normal[:, None]).sum(axis=-1)
         gap[self._corner, 1] = np.inf
         gap[~frame.closed.any(axis=1)] = np.inf
@@ -230,24 +229,16 @@ class Displaced:
         self, frame: Frame, rates: Array, value_rate: float
     ) -> tuple[Frame, Lost | None]:
         """Return a frame without the contacts that a motion opens, and what else it does."""
-        _, arms = self._arms_at(frame)
+        poses, arms = self._arms_at(frame)
         bodies = np.vstack([rates, value_rate * self.speeds(frame.value)])[self._sides]
         # Velocities of supports are told at the origin, so their arms are points.
         points = self._points(frame)
         arms = np.where((self._sides < self._count)[:, :, None, None], arms, points)
-        turn = bodies[:, :, None, 2]
-        way = np.stack(
-            [
-                bodies[:, :, None, 0] - turn * arms[..., 1],
-                bodies[:, :, None, 1] + turn * arms[..., 0],
-            ],
-            axis=-1,
-        )
+        around = bodies[:, :, None, 2:] * arms[..., ::-1] * [-1, 1]
+        way = bodies[:, :, None, :2] + around
         apart = way[:, 1] - way[:, 0]
         scale = np.abs(rates).max() or 1.0
-        poses = np.vstack([frame.poses, self._placed(frame.value)])
-        middle = (poses[self._sides[:, 0], 2] + poses[self._sides[:, 1], 2]) / 2
-        normal = _turned(self._axes.T, middle).T
+        normal = _turned(self._axes.T, poses[:, :, 2].mean(axis=1)).T
         opens = frame.closed & ((apart * normal[:, None]).sum(axis=-1) > OPENS * scale)
         stays = frame.closed & ~opens
         slips = np.hypot(apart[..., 0], apart[..., 1]) > 10 * OPENS * scale
