@@ -12,7 +12,7 @@ from worlds import ground_level
 from analysis import rubble
 from blocksim import Arch, CircularArch, Recording, simulate
 from blocksim.engines.energy import Balance, energy
-from blocksim.engines.solids import prisms
+from blocksim.engines.solids import obj_text, prism
 
 CASES = {case.number: case for case in rubble.cases(rubble.COUNT)}
 ARCH, STACK = CASES[12], CASES[14]
@@ -113,7 +113,7 @@ def test_a_prism_is_written_with_faces_outwards() -> None:
     """By the divergence theorem its volume is that of the polygons times the depth."""
     square = np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)])
     triangle = np.array([(2.0, 0.0), (3.0, 0.0), (2.0, 1.0)])
-    lines = prisms([square, triangle], 3.0).splitlines()
+    lines = obj_text(prism(each, 3.0) for each in (square, triangle)).splitlines()
     corners = np.array([line.split()[1:] for line in lines if line[0] == "v"], dtype=float)
     faces = [[int(k) - 1 for k in line.split()[1:]] for line in lines if line[0] == "f"]
     volume = 0.0

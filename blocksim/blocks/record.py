@@ -75,7 +75,10 @@ def from_record(
     built = dict(given.pop("assembly"))
     # In space the size follows from the blocks.
     assembly = _in_plane(built) if "size" in built else _in_space(built)
-    dead, live = (tuple(_load(each) for each in given.pop(name)) for name in ("dead", "live"))
+    dead, live = (
+        tuple(Load(**_tupled(each, "blocks")) for each in given.pop(name))
+        for name in ("dead", "live")
+    )
     moves = tuple(Move(**each) for each in given.pop("moves"))
     on = [each for load in (*dead, *live) for each in load.blocks]
     known = all(_is_place(each, len(assembly.blocks)) for each in on)
@@ -108,8 +111,8 @@ def from_record(
 
 def _in_plane(built: dict[str, Any]) -> Assembly:
     assembly = Assembly(
-        blocks=tuple(_block(each) for each in built["blocks"]),
-        joints=tuple(_joint(each) for each in built["joints"]),
+        blocks=tuple(Block(**_tupled(each, "parts")) for each in built["blocks"]),
+        joints=tuple(Joint(**_numbers(each)) for each in built["joints"]),
         size=float(built["size"]),
         supports=tuple(Support(**each) for each in built["supports"]),
     )
@@ -149,13 +152,13 @@ def _in_space(built: dict[str, Any]) -> SpatialAssembly:
 
 def _solid(record: dict[str, Any]) -> SolidBlock:
     hulls = tuple(Polyhedron(each["corners"], float(each["slack"])) for each in record["hulls"])
-    given: dict[str, Any] = {**record, "hulls": hulls, "name": str(record["name"])}
-    return SolidBlock(**{**given, "centre": _points([record["centre"]])[0]})
+    name, centre = str(record["name"]), _points([record["centre"]])[0]
+    return SolidBlock(**{**record, "hulls": hulls, "name": name, "centre": centre})
 
 
 def _face(record: dict[str, Any]) -> FaceJoint:
-    given: dict[str, Any] = {**_numbers(record), "points": _points(record["points"])}
-    return FaceJoint(**{**given, "normal": _points([record["normal"]])[0]})
+    points, normal = _points(record["points"]), _points([record["normal"]])[0]
+    return FaceJoint(**{**_numbers(record), "points": points, "normal": normal})
 
 
 def _points(record: Any) -> Array:
@@ -165,21 +168,6 @@ def _points(record: Any) -> Array:
         message = "no points"
         raise ValueError(message)
     return found
-
-
-def _block(record: dict[str, Any]) -> Block:
-    given: dict[str, Any] = {**record, "parts": tuple(record["parts"])}
-    return Block(**given)
-
-
-def _joint(record: dict[str, Any]) -> Joint:
-    given: dict[str, Any] = _numbers(record)
-    return Joint(**given)
-
-
-def _load(record: dict[str, Any]) -> Load:
-    given: dict[str, Any] = {**record, "blocks": tuple(record["blocks"])}
-    return Load(**given)
 
 
 def _shaking(record: Mapping[str, Any] | None) -> Shaking | None:
@@ -207,7 +195,11 @@ def _tuples(value: Any) -> Any:
     return tuple(map(_tuples, cast("list[Any]", value))) if isinstance(value, list) else value
 
 
-def _numbers(record: Mapping[str, Any]) -> dict[str, object]:
+def _tupled(record: Mapping[str, Any], name: str) -> dict[str, Any]:
+    return {**record, name: tuple(record[name])}
+
+
+def _numbers(record: Mapping[str, Any]) -> dict[str, Any]:
     return {key: math.inf if value == "inf" else value for key, value in record.items()}
 
 

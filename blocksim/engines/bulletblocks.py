@@ -41,7 +41,7 @@ from blocksim.engines.boxes import EDGE, TURNS, Frame, edge, plate
 from blocksim.engines.bulletparts import Ends, Joints, Link, let_go, linked, met
 from blocksim.engines.bulletspace import SLOP, Space, State, friction_share
 from blocksim.engines.faces import LEDGE, LEDGE_SHARE, Side, reaching, sides_of
-from blocksim.engines.solids import Polygons, prisms
+from blocksim.engines.solids import Polygons, obj_text, prism
 
 OVERLAP = SLOP
 """Of two closed faces: they would sink until they overlap by it [size]."""
@@ -161,14 +161,16 @@ class Planar(Polygons):
             polygons[index].append(polygon)
         bodies = list[int]()
         for index, state in enumerate(states):
-            text = prisms(polygons[index], float(assembly.depths[index]))
+            deep = float(assembly.depths[index])
+            text = obj_text(prism(each, deep) for each in polygons[index])
             built = State(state.place, self.frame.quaternion)
             bodies.append(space.hulls(text, own, built, _masses(self.problem, index)))
         # As deep as it is drawn.
         deep = float(assembly.depths.max())
         for polygon in self.solids.fixed:
             middle = polygon.mean(axis=0)
-            space.hulls(prisms([polygon - middle], deep), own, self._of(middle))
+            text = obj_text([prism(polygon - middle, deep)])
+            space.hulls(text, own, self._of(middle))
         space.floor(own, self._of(np.array([0.0, self.solids.level])), [0.0, 1.0, 0.0])
         return let_go(space, bodies, states, self.problem.gravity)
 

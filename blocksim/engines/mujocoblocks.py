@@ -18,7 +18,7 @@ from blocksim.common.checks import require
 from blocksim.engines.base import FRICTION_CAP, Library
 from blocksim.engines.boxes import plate, uneven_depths
 from blocksim.engines.faces import reaching, sides_of
-from blocksim.engines.solids import Polygons
+from blocksim.engines.solids import Polygons, prism
 
 library: Any = Library("mujoco")
 
@@ -175,10 +175,7 @@ class Planar(Polygons):
         solids, half = self.solids, math.sqrt(0.5)
         polygons = [(bodies[index], polygon) for index, polygon in solids.moving]
         polygons += [(spec.worldbody, polygon) for polygon in solids.fixed]
-        hulls = [
-            (body, np.array([[x, y, z] for z in (-0.5, 0.5) for x, y in polygon.tolist()]))
-            for body, polygon in polygons
-        ]
+        hulls = [(body, prism(polygon, 1.0)[0]) for body, polygon in polygons]
         # The floor's normal is z, turned to y.
         floor = {"pos": [0.0, solids.level, 0.0], "quat": [half, -half, 0.0, 0.0]}
         return rubble_of(spec, hulls, floor, self.problem.mu)

@@ -13,6 +13,7 @@ from functools import cached_property
 from typing import NamedTuple, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
@@ -22,7 +23,7 @@ from blocksim.blocks.space.polyhedron import frame
 from blocksim.engines.energy import Balance
 from blocksim.engines.solid.between import as_built
 from blocksim.engines.solid.bodies import Bodies, Place
-from blocksim.engines.solids import LARGEST
+from blocksim.engines.solids import LARGEST, obj_text
 
 SQUARE = 1e-6
 """Cosine from 1 up to which a face lies along a joint."""
@@ -184,25 +185,20 @@ class Polyhedra:
     def texts(self) -> tuple[list[str], list[str]]:
         """Return hulls as texts of .obj files: of blocks in their frames, and of supports."""
         hulls = self.bodies.hulls
-        owned = [
-            np.flatnonzero(hulls.owner == index).tolist()
-            for index in range(len(self.assembly.blocks))
-        ]
-        moving = ["\n".join(self._text(hull) for hull in its) for its in owned]
+        owned = [hulls.owner == index for index in range(len(self.assembly.blocks))]
         fixed = np.flatnonzero((hulls.owner == SUPPORT) & (hulls.support >= 0))
-        return moving, [self._text(hull) for hull in fixed.tolist()]
+        moving = [self._text(np.flatnonzero(its)) for its in owned]
+        return moving, [self._text(hull) for hull in fixed[:, None]]
 
-    def _text(self, hull: int) -> str:
-        """Return one hull as the text of an .obj file, numbered from the last corner back."""
+    def _text(self, which: NDArray[np.int64]) -> str:
+        """Return hulls as the text of an .obj file."""
         hulls = self.bodies.hulls
-        corners, many = hulls.corners[hull], hulls.many[hull]
-        lines = [f"o {hull}", *(f"v {x!r} {y!r} {z!r}" for x, y, z in corners.tolist())]
-        for around, count in zip(hulls.around[hull], many.tolist(), strict=True):
-            if count:
-                # Numbers below 0 count back: files may hold several hulls.
-                own = (around[:count] - len(corners)).tolist()
-                lines.append("f " + " ".join(map(str, own)))
-        return "\n".join(lines) + "\n"
+        known = zip(hulls.corners, hulls.around.tolist(), hulls.many.tolist(), strict=True)
+        every = [
+            (corners, [way[:count] for way, count in zip(around, many, strict=True) if count])
+            for corners, around, many in known
+        ]
+        return obj_text(every[hull] for hull in which.tolist())
 
     @property
     def level(self) -> float:

@@ -10,6 +10,7 @@ those of `direct` (`contact.neighbours`).
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -116,23 +117,27 @@ class Polygons:
         return Balance.of(self.problem, poses)
 
 
-def prisms(polygons: list[Array], depth: float) -> str:
-    """Return polygons of some depth, halved by the plane, as the text of an .obj file."""
-    lines: list[str] = []
-    before = 0
-    for number, polygon in enumerate(polygons):
-        count = len(polygon)
+Faces = Sequence[Sequence[int]]
+"""Of a convex hull, by its corners, seen from outside counter-clockwise."""
+
+
+def prism(polygon: Array, depth: float) -> tuple[Array, Faces]:
+    """Return a polygon of some depth, halved by the plane: corners, (2 k, 3), and faces."""
+    count = len(polygon)
+    ends = [np.column_stack([polygon, np.full(count, z)]) for z in (-depth / 2, depth / 2)]
+    around = zip(range(count), [*range(1, count), 0], strict=True)
+    sides = [[low, high, high + count, low + count] for low, high in around]
+    return np.concatenate(ends), [range(count)[::-1], range(count, 2 * count), *sides]
+
+
+def obj_text(hulls: Iterable[tuple[Array, Faces]]) -> str:
+    """Return convex hulls, corners and faces of each, as the text of an .obj file."""
+    lines, first = list[str](), 1
+    for number, (corners, faces) in enumerate(hulls):
         lines.append(f"o {number}")
-        for z in (-depth / 2, depth / 2):
-            lines += [f"v {x!r} {y!r} {z!r}" for x, y in polygon.tolist()]
-        back = range(before + count, before, -1)
-        front = range(before + count + 1, before + 2 * count + 1)
-        faces = [list(back), list(front)]
-        for first, second in zip(range(count), [*range(1, count), 0], strict=True):
-            low, high = before + 1 + first, before + 1 + second
-            faces.append([low, high, high + count, low + count])
-        lines += ["f " + " ".join(map(str, face)) for face in faces]
-        before += 2 * count
+        lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in corners.tolist()]
+        lines += ["f " + " ".join(str(first + each) for each in face) for face in faces]
+        first += len(corners)
     return "\n".join(lines) + "\n"
 
 
