@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -102,11 +103,10 @@ class Soil:
         `depths`, (blocks,): Of those that move, which come first [m].
         `road`: Height of the road [m].
         """
-        found: dict[int, list[Array]] = {}
+        found: dict[tuple[int, bool], list[Array]] = defaultdict(list)
         for body, parts in self._parts(profile, depths, road, self.pressure):
-            found.setdefault(body, []).append(parts)
-        known = [(body, np.concatenate(parts)) for body, parts in sorted(found.items())]
-        return _loads(known)
+            found[body, True].append(parts)
+        return _loads(found)
 
     def bearing(self, profile: Profile, depths: Array, road: float) -> tuple[Load, ...]:
         """Return what soil bears more at most, of each block and side of its own."""
@@ -114,15 +114,12 @@ class Soil:
             return ()
         least, most = np.array(self.pressure), np.array(self.passive)
         more = tuple(np.where(most > 0, most - least, 0.0).tolist())
-        found: dict[tuple[int, bool], list[Array]] = {}
+        found: dict[tuple[int, bool], list[Array]] = defaultdict(list)
         for body, parts in self._parts(profile, depths, road, more):
             for rises in (True, False):
                 mine = parts[parts[:, 2] > 0 if rises else parts[:, 2] < 0]
-                found.setdefault((body, rises), []).append(
-                    mine * np.array([1.0, 1.0, 1.0, 0.0])
-                )
-        known = [(body, np.concatenate(parts)) for (body, _), parts in sorted(found.items())]
-        return _loads(known)
+                found[body, rises].append(mine * [1.0, 1.0, 1.0, 0.0])
+        return _loads(found)
 
     def _parts(
         self, profile: Profile, depths: Array, road: float, sides: Sides
@@ -159,14 +156,8 @@ class Soil:
             for at, share in zip(*quadrature(one, other), strict=True):
                 x, y = (start + at * way).tolist()
                 weight, counted = self._above(x, y, levels)
-                found.append(
-                    [
-                        x,
-                        y,
-                        coefficient * weight * share * float(way[1]),
-                        (weight - counted) * share * float(way[0]),
-                    ]
-                )
+                across, down = coefficient * weight, weight - counted
+                found.append([x, y, across * share * way[1], down * share * way[0]])
         return np.array(found).reshape(-1, 4)
 
     def _levels(self, road: float, low: float) -> list[tuple[float, float | None]]:
@@ -198,8 +189,9 @@ class Soil:
         return weight, counted
 
 
-def _loads(known: list[tuple[int, Array]]) -> tuple[Load, ...]:
+def _loads(found: dict[tuple[int, bool], list[Array]]) -> tuple[Load, ...]:
     """Return forces on blocks from parts of their surfaces: one across, one down."""
+    known = [(body, np.concatenate(parts)) for (body, _), parts in sorted(found.items())]
     most = max((float(np.abs(parts[:, 2:]).sum()) for _, parts in known), default=0.0)
     loads: list[Load] = []
     for body, parts in known:
