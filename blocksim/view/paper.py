@@ -6,13 +6,13 @@ from typing import NamedTuple
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from blocksim.arch.modes import Mode
 from blocksim.common.checks import require
 from blocksim.studies.paper import ARCHES, FIGURES
+from blocksim.view.drawing import new_figure
 from blocksim.view.linemap import line_map_figure
 from blocksim.view.mapregions import (
     CENTRAL,
@@ -74,13 +74,12 @@ def paper_figure(number: int) -> Figure:
             figure = paper_arch_figure(number)
         else:
             figure = _filled(number)
-        FigureCanvasAgg(figure)
         return figure
 
 
 def _filled(number: int) -> Figure:
     """Draw the regions: Fig. 9 with equations, Fig. 10 without, Fig. 11 the middle."""
-    figure = Figure(figsize=(8.6, 7.0), layout="constrained")
+    figure = new_figure((8.6, 7.0))
     axes = figure.add_subplot()
     draw_regions(axes, CENTRAL if number == 11 else WHOLE)
     if number == 9:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from blocksim.arch.theory import landmarks
 from blocksim.arch.theory.curves import rotational_branches, sliding_curve
 from blocksim.arch.theory.map import special_angles
+from blocksim.view.drawing import new_figure
 from blocksim.view.style import INK, QUIET
 
 DASHED, DOTTED = (0, (5, 2)), (0, (1, 1))
@@ -26,7 +27,7 @@ MOST_FRICTION = 5.0
 def curve_figure(number: int) -> Figure:
     """Draw Fig. 3, 4 or 5: a panel for each quantity, one above the other."""
     rows, draw = {3: (3, _rotational), 4: (2, _inner_sliding), 5: (3, _sliding)}[number]
-    figure = Figure(figsize=(7.0, 2.6 * rows), layout="constrained")
+    figure = new_figure((7.0, 2.6 * rows))
     panels = [figure.add_subplot(rows, 1, row + 1) for row in range(rows)]
     draw(panels)
     for axes in panels:

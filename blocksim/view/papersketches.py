@@ -13,6 +13,7 @@ from blocksim.arch.modes import Mode
 from blocksim.arch.theory import least_thickness
 from blocksim.blocks.assembly import Array
 from blocksim.view.archfigure import draw_arch, picture_of_theory
+from blocksim.view.drawing import new_figure
 from blocksim.view.style import FRICTION, INK, MECHANISM, QUIET, STONE, THRUST
 
 HALF_ANGLE, ETA = math.radians(75), 0.24
@@ -36,7 +37,7 @@ def sketch_figure(number: int) -> Figure:
     """Draw Fig. 1, 2 or 12."""
     if number == 12:
         return _joint()
-    figure = Figure(figsize=(7.6, 5.2), layout="constrained")
+    figure = new_figure((7.6, 5.2))
     axes = figure.add_subplot()
     (_measures if number == 1 else _rotational)(axes)
     axes.set_aspect("equal")
@@ -137,7 +138,7 @@ def _rotational(axes: Axes) -> None:
 
 def _joint() -> Figure:
     """Fig. 12: strength of a joint, and its rates."""
-    figure = Figure(figsize=(8.6, 7.4), layout="constrained")
+    figure = new_figure((8.6, 7.4))
     grid = figure.add_gridspec(2, 1, height_ratios=(1.25, 1.0))
     above, below = (figure.add_subfigure(grid[row]) for row in range(2))
     moment, shear = (above.add_subplot(1, 2, place + 1) for place in range(2))
