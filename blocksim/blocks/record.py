@@ -153,12 +153,14 @@ def _in_space(built: dict[str, Any]) -> SpatialAssembly:
 def _solid(record: dict[str, Any]) -> SolidBlock:
     hulls = tuple(Polyhedron(each["corners"], float(each["slack"])) for each in record["hulls"])
     name, centre = str(record["name"]), _points([record["centre"]])[0]
-    return SolidBlock(**{**record, "hulls": hulls, "name": name, "centre": centre})
+    given: dict[str, Any] = {**record, "hulls": hulls, "name": name, "centre": centre}
+    return SolidBlock(**given)
 
 
 def _face(record: dict[str, Any]) -> FaceJoint:
     points, normal = _points(record["points"]), _points([record["normal"]])[0]
-    return FaceJoint(**{**_numbers(record), "points": points, "normal": normal})
+    given: dict[str, Any] = {**_numbers(record), "points": points, "normal": normal}
+    return FaceJoint(**given)
 
 
 def _points(record: Any) -> Array:

@@ -13,7 +13,6 @@ from functools import cached_property
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
@@ -23,7 +22,7 @@ from blocksim.blocks.space.polyhedron import frame
 from blocksim.engines.energy import Balance
 from blocksim.engines.solid.between import as_built
 from blocksim.engines.solid.bodies import Bodies, Place
-from blocksim.engines.solids import LARGEST, obj_text
+from blocksim.engines.solids import LARGEST, Faces, obj_text
 
 SQUARE = 1e-6
 """Cosine from 1 up to which a face lies along a joint."""
@@ -187,18 +186,18 @@ class Polyhedra:
         hulls = self.bodies.hulls
         owned = [hulls.owner == index for index in range(len(self.assembly.blocks))]
         fixed = np.flatnonzero((hulls.owner == SUPPORT) & (hulls.support >= 0))
-        moving = [self._text(np.flatnonzero(its)) for its in owned]
-        return moving, [self._text(hull) for hull in fixed[:, None]]
+        moving = [self._text(np.flatnonzero(its).tolist()) for its in owned]
+        return moving, [self._text([hull]) for hull in fixed.tolist()]
 
-    def _text(self, which: NDArray[np.int64]) -> str:
+    def _text(self, which: list[int]) -> str:
         """Return hulls as the text of an .obj file."""
         hulls = self.bodies.hulls
         known = zip(hulls.corners, hulls.around.tolist(), hulls.many.tolist(), strict=True)
-        every = [
+        every: list[tuple[Array, Faces]] = [
             (corners, [way[:count] for way, count in zip(around, many, strict=True) if count])
             for corners, around, many in known
         ]
-        return obj_text(every[hull] for hull in which.tolist())
+        return obj_text(every[hull] for hull in which)
 
     @property
     def level(self) -> float:
