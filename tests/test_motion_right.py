@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from four_links import Arch
+from recorded import drawn_words
 from rocking import G, block, on_pulse, rocks
 from scipy.integrate import solve_ivp
 from worlds import DIRECT, Blocks, Simulation
@@ -33,6 +34,7 @@ from blocksim import (
     structure_of,
 )
 from blocksim.report.recordings import recording_lines
+from blocksim.view.film import Film
 
 LONG = pytest.mark.long
 
@@ -208,6 +210,11 @@ def test_a_recording_says_how_long_it_is_known() -> None:
     assert off.max() <= kept.error <= 0.01
     assert 0 < recording.overlap_share < 0.01
     assert any("twice the step" in line for line in recording_lines(recording, "r"))
+    assert not any("not found" in line for line in recording_lines(recording, "r"))
+    for left, words in ((1e-2, "not found, but to 0.01 g"), (math.inf, "not found: what")):
+        stopped = replace(recording, quality=replace(kept, residual=left))
+        assert words in "".join(recording_lines(stopped, "r"))
+        assert any("contact forces not found" in word for word in drawn_words(Film([stopped])))
 
 
 @pytest.mark.parametrize("method", ["direct", "pymunk", "pybullet", "mujoco"])

@@ -28,6 +28,7 @@ from blocksim.common.words import counted
 from blocksim.engines import NAMES
 from blocksim.kinds.loading import load_recording
 from blocksim.report.poses import write_recording_csv, write_recording_json
+from blocksim.report.recordings import unsolved_words
 from blocksim.simulation.motion import EARLY
 from blocksim.simulation.observation import conclude, hold
 from blocksim.simulation.recording import Recording
@@ -153,6 +154,8 @@ def film(out: Path, shown: Sequence[Recording[Any]], at: float | None, **options
         left = recording.quality.residual or 0.0
         if recording.problem.in_space and left > ROUGH:
             say(f"Coulomb's law was kept to {left:.1g} of the forces, where it was worst")
+        if recording.unsolved:
+            say(unsolved_words(recording))
         if not moves:
             say(_motionless(recording))
 

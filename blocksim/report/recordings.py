@@ -39,6 +39,13 @@ def recording_record(recording: Recording) -> dict[str, object]:
     }
 
 
+def unsolved_words(recording: Recording) -> str:
+    """Say that contact forces were not found in some step."""
+    left = recording.unsolved
+    far = f", but to {left:.1g} g" if math.isfinite(left) else ""
+    return f"contact forces were not found{far}: what it shows from there on may be wrong"
+
+
 def recording_lines(recording: Recording, unit: str) -> list[str]:
     """Return a recording in words; `unit` is that of lengths in which it has been made."""
     lines = [
@@ -59,6 +66,8 @@ def recording_lines(recording: Recording, unit: str) -> list[str]:
         )
     if said:
         lines.append("  " + ", ".join(said))
+    if recording.unsolved:
+        lines.append("  " + unsolved_words(recording))
     said = []
     if kept.penetration is None:
         said.append(f"{recording.engine} does not tell how deep blocks overlap")

@@ -99,6 +99,16 @@ class Recording(Shown, Generic[Blocks]):
         return self._moved(beyond=True)
 
     @property
+    def unsolved(self) -> float:
+        """How far contact forces were off where `direct` did not find them [g]; else 0.
+
+        Blocks of the plane are left where they are then, which is no rest.
+        """
+        planar = self.engine == "direct" and not self.problem.in_space
+        left = self.quality.residual or 0.0 if planar else 0.0
+        return 0.0 if left <= self.settings.residual else left
+
+    @property
     def overlap_share(self) -> float | None:
         """Deepest overlap over the width of the smallest block; None if not known.
 

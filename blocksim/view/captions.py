@@ -62,6 +62,7 @@ def title(
     facts[1:1] = built if problem.title else []
     facts[1:1] = ["still moving as it ends"] if moving else []
     run = stage.recording
+    facts[1:1] = ["contact forces not found"] if run.unsolved else []
     if (known := run.quality.known) is not None:
         sized = problem.has_size
         until = f"{known * problem.seconds:.2g} s" if sized else f"{known:.2g} √(r/g)"
