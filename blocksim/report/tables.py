@@ -6,7 +6,7 @@ import io
 import math
 import platform
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import fields
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,7 +19,7 @@ from blocksim.engines import ENGINES, NAMES, engine_named
 from blocksim.report.inlinemap import PAGE
 from blocksim.report.page import report_page
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
-from blocksim.studies.questions import NEAR, SLOWLY, StructureRow
+from blocksim.studies.questions import NEAR, SLOWLY
 from blocksim.studies.validate import ASIDE, ERROR_BOUND, Row, parted
 from blocksim.view.drawing import save_figure
 from blocksim.view.mapfigure import MapPoint, map_figure
@@ -27,23 +27,21 @@ from blocksim.view.mapfigure import MapPoint, map_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-
-def as_record(row: Validation) -> dict[str, object]:
-    """Return a row with its angles in degrees, without the motion recorded."""
-    fields = asdict(replace(row, recording=None))
-    left_out = {"half_angle", "recording"}
-    record = {key: value for key, value in fields.items() if key not in left_out}
-    for key in ("modes_published", "modes_theory"):
-        record[key] = "/".join(record[key])
-    return {"scenario": row.scenario, "half_angle_deg": math.degrees(row.half_angle), **record}
+MODES = ("modes_published", "modes_theory")
+"""Lists of modes, of which each may be the right one."""
 
 
-def structure_record(row: StructureRow) -> dict[str, object]:
-    """Return a row on a structure, its fields those of `StructureRow`, without the drawing."""
-    fields = asdict(replace(row, drawn=None))
-    record = {key: value for key, value in fields.items() if key != "drawn"}
-    for key in ("expected_hinges", "hinges"):
-        record[key] = " ".join(map(str, record[key]))
+def as_record(row: Row) -> dict[str, object]:
+    """Return a row for JSON and CSV: its angle in degrees, lists as texts, nothing drawn."""
+    record: dict[str, object] = {}
+    for name in (each.name for each in fields(row)):
+        value = getattr(row, name)
+        if isinstance(value, tuple):
+            value = ("/" if name in MODES else " ").join(map(str, value))
+        if name == "half_angle":
+            record["half_angle_deg"] = math.degrees(value)
+        elif name not in {"recording", "drawn"}:
+            record[name] = value
     return record
 
 
@@ -80,7 +78,7 @@ def write_results(
     """
     rows, structures = parted(found)
     records = [as_record(row) for row in rows]
-    built = [structure_record(row) for row in structures]
+    built = [as_record(row) for row in structures]
     asked = [row.engine for row in rows] + [row.method for row in structures]
     engines = [ENGINES[name] for name in NAMES]
     engines += [engine_named(name) for name in dict.fromkeys(asked) if name not in METHODS]
@@ -92,7 +90,7 @@ def write_results(
         "settings": settings,
         "rows": records,
         "disagreements": disagreements(rows),
-        "not_asked": [asdict(each) for each in unasked],
+        "not_asked": list(unasked),
         "structures": {
             "settings": {"aside": asides, "near": NEAR, "slowly": SLOWLY},
             "rows": built,

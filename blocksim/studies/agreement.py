@@ -57,8 +57,8 @@ class Validation:
     """
 
     scenario: str
-    engine: str
     half_angle: float
+    engine: str
     mu: float
     voussoirs: int
     weight: str
