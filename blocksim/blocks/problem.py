@@ -73,8 +73,7 @@ class Problem(Shown, Generic[Blocks]):
     shaking : Shaking or None
         How the ground shakes from the release on.
     velocities : (blocks, 3) float
-        Those of centres and of rotations at the release [m/s, rad/s]; empty where blocks begin
-        at rest.
+        Of centres and rotations at the release [m/s, rad/s]; empty where all begin at rest.
     title, source : str
         What it is, and where it comes from.
     maker : Kind or None
@@ -253,14 +252,12 @@ class Problem(Shown, Generic[Blocks]):
         return replace(self, gravity=turned)
 
     def leaning(self, lean: float) -> Self:
-        """Return the same with gravity leaning out of the plane by an angle [rad]."""
+        """Return the same with gravity out of the plane by an angle [rad], not as it was."""
         LEAN.require("lean", lean)
         require(not self.in_space, "lean", lean, "left out in space: tilt towards an azimuth")
-        strength = float(np.linalg.norm(self.gravity))
-        # It leans in place of how it leaned before.
-        flat = self.gravity[:2] * (strength / float(np.linalg.norm(self.gravity[:2])))
-        leaning = [*flat * math.cos(lean), strength * math.sin(lean)]
-        return replace(self, gravity=np.array(leaning))
+        strength, level = math.hypot(*self.gravity), math.hypot(*self.gravity[:2])
+        leaning = [*self.gravity[:2] / level * math.cos(lean), math.sin(lean)]
+        return replace(self, gravity=strength * np.array(leaning))
 
     def under(self, acceleration: float) -> Self:
         """Return the same where gravity accelerates otherwise than by 9.81 m/s2.

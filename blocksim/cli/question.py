@@ -11,7 +11,8 @@ from blocksim.blocks.problem import Problem
 from blocksim.cli.built import Given
 from blocksim.cli.options import named_options, refuse, require_given
 from blocksim.common.checks import is_number, require
-from blocksim.kinds.circular import THICK, CircularArch
+from blocksim.kinds.circular import CircularArch
+from blocksim.kinds.ways import THICK
 
 ASIDE = 0.99
 """Thickness where none is given, over its least: the arch collapses, in one mode."""

@@ -7,7 +7,8 @@ from typing import Any, cast
 
 from blocksim.arch.dimensions import friction_of, require_unit_weight
 from blocksim.common.checks import FRICTION_ANGLE, LEAN_DEG, require
-from blocksim.kinds.circular import THICK, CircularArch
+from blocksim.kinds.circular import CircularArch
+from blocksim.kinds.ways import THICK
 
 RENAMED = {"mu": "friction", "specific_weight": "density"}
 """Keys that have other names, besides those that ended in their unit, `_m`."""

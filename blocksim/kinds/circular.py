@@ -26,35 +26,22 @@ from blocksim.common.checks import (
     RATIO,
     VOUSSOIRS,
     Range,
-    infinite,
     require,
 )
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.fields import Field, fields_of
 from blocksim.kinds.archkind import CurvedArch
 from blocksim.kinds.curves import Curve, Voussoirs, circle
+from blocksim.kinds.ways import SPRINGINGS, left_by, without_following
 
 if TYPE_CHECKING:
     from blocksim.kinds.archoffers import ArchOffers
 
 ROUND = 360.0
-SPRINGINGS = "left_deg", "right_deg"
 WEIGHTS: dict[str, Weight] = {"centreline": "centreline", "curved": "sector"}
 """What an arch calls the weights of a kind that it has, too."""
 LEAST_DENSITY = 100.0
 """Weight per volume below which weights are taken for ratios, not for newtons [N/m^3]."""
-THICK = {"thickness", "eta", "ratio"}
-LINE = {"span", "rise", "at"}
-ANGLES = {"half_angle", "half_angle_deg", "left_deg", "right_deg"}
-"""Parameters each of which says how thick it is, which line was measured, or where it ends."""
-FOLLOW = {
-    ("span", "rise", "at"): ("radius", "half_angle", "half_angle_deg"),
-    ("half_angle_deg",): ("half_angle",),
-    ("half_angle",): SPRINGINGS,
-    ("ratio",): ("eta", "thickness"),
-    ("eta",): ("thickness",),
-}
-"""What follows from what else may be given."""
 
 
 def _instead(about: str, known: Range) -> Any:
@@ -213,27 +200,12 @@ class CircularArch(CurvedArch):
     @classmethod
     def beside(cls, table: Mapping[str, Any], changes: Mapping[str, object]) -> dict[str, Any]:
         """Return what a table still says: of how thick it is, and how wide, one thing."""
-        left, more = set[str](), dict[str, Any]()
-        if THICK & changes.keys():
-            left |= THICK
-        if LINE & changes.keys():
-            left |= {*ANGLES, "radius"}
-        elif "span" in table and ANGLES & changes.keys():
-            # It is no longer the line that was measured; the centreline stays.
-            known: dict[str, Any] = {
-                name: infinite(table[name])
-                for name in table.keys() & {*cls.__dataclass_fields__}
-            }
-            left, more = left | LINE, {"radius": cls(**known).radius}
-        return {**{name: table[name] for name in table if name not in left}, **more}
+        return left_by(changes, table, lambda known: cls(**known).radius)
 
     def but(self, **changes: Any) -> Self:
         """Return the same with other values; the line that was measured stays where it is."""
-        given: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
-        for leading, following in FOLLOW.items():
-            if getattr(self, leading[0]) is not None:
-                left = leading if {*following} & {*changes} else following
-                given = {name: value for name, value in given.items() if name not in left}
+        given = {each.name: getattr(self, each.name) for each in fields(self)}
+        given = without_following(given, changes)
         for name, value in changes.items():
             known = name in type(self).__dataclass_fields__
             require(known, name, value, f"one of {', '.join(fields_of(type(self)))}")

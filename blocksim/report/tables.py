@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import blocksim
 from blocksim.ask.methods import METHODS
@@ -27,19 +27,19 @@ from blocksim.view.mapfigure import MapPoint, map_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-MODES = ("modes_published", "modes_theory")
-"""Lists of modes, of which each may be the right one."""
+LISTS = {"modes_published": "/", "modes_theory": "/", "expected_hinges": " ", "hinges": " "}
+"""Lists, and what stands between their members in a text."""
 
 
 def as_record(row: Row) -> dict[str, object]:
     """Return a row for JSON and CSV: its angle in degrees, lists as texts, nothing drawn."""
     record: dict[str, object] = {}
     for name in (each.name for each in fields(row)):
-        value = getattr(row, name)
-        if isinstance(value, tuple):
-            value = ("/" if name in MODES else " ").join(map(str, value))
+        value: Any = getattr(row, name)
         if name == "half_angle":
             record["half_angle_deg"] = math.degrees(value)
+        elif name in LISTS:
+            record[name] = LISTS[name].join(map(str, value))
         elif name not in {"recording", "drawn"}:
             record[name] = value
     return record
