@@ -25,7 +25,7 @@ STACK = {
 }
 INPUTS = {
     "arch": (("render", "semicircle", "--eta", "0.12"), "27 voussoirs, "),
-    "continuous": (("render", "semicircle"), "continuous arch"),
+    "continuous": (("render", "--alpha", "90", "--mu", "0.7"), "continuous arch"),
     "structure": (("render", "stack.json"), "stands, by limit"),
     "recording": (("render", "run.npz"), "at rest"),
     "leaning": (("render", "semicircle_tilted_overturns"), "gravity leans"),

@@ -192,11 +192,12 @@ def test_names_are_escaped_and_nothing_is_loaded(pages: Path) -> None:
     assert "blocksim report" in re.sub(r"<[^>]+>", "", text)
 
 
-def test_a_thickness_that_was_not_given_is_told(tmp_path: Path) -> None:
+def test_a_thickness_that_is_a_share_of_the_least_is_told(tmp_path: Path) -> None:
     out = tmp_path / "semicircle.html"
     assert inside("report", "semicircle", "--out", str(out)).returncode == 1
     text = out.read_text(encoding="utf-8")
-    assert "No thickness was given, so it is 0.99 of the least as built" in text
+    assert "0.99" in text
+    assert "thickness over the least one that stands, as built" in text
 
 
 PAPER = (182, 273)
