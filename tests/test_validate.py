@@ -196,10 +196,15 @@ def test_what_was_not_asked_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_scenarios_and_doctor_list_figures() -> None:
-    line = next(
-        x for x in blocksim("scenarios").stdout.splitlines() if "semicircle_tilted_s" in x
-    )
-    assert line.split()[1:4] == ["15", "3", "stands"]
+    lines = blocksim("scenarios").stdout.splitlines()
+    at = next(k for k, line in enumerate(lines) if "semicircle_tilted_s" in line)
+    assert lines[at].split()[1:3] == ["15", "3"]
+    assert lines[at + 1].startswith("    known: stands")
+    # Where no window says how wide it is, tables are folded at 80, and names are whole.
+    for listing in (("scenarios",), ("kinds",), ("kinds", "wall"), ("kinds", "arcade")):
+        lines = blocksim(*listing).stdout.splitlines()
+        assert max(map(len, lines)) <= 80
+        assert all(line == line.rstrip() for line in lines)
     said = blocksim("doctor").stdout
     assert re.search(r"blocksim \S+, Python 3\.\d+", said)
     assert re.search(r"numpy \d", said)

@@ -18,14 +18,15 @@ NUMBERS = {"mu", "blocks"}
 
 def list_scenarios() -> None:
     """List the structures and vehicles that come with blocksim."""
-    built = Table("structure", "blocks", "mu", "known", "title", "source", right=NUMBERS)
+    headings = ("structure", "blocks", "mu", "known", "title", "source")
+    built = Table(*headings, right=NUMBERS, below=3)
     for known in structures(quick=False):
         problem, told = known.problem, ", ".join(map(_expected, known.expect))
         size = str(len(problem.assembly.blocks)), f"{problem.mu:.4g}"
         built.add_row(known.name, *size, told, problem.title, problem.source)
     show(built)
     say("")
-    vehicles = Table("vehicle", "axles", "title", "source")
+    vehicles = Table("vehicle", "axles", "title", "source", below=3)
     for name in shipped_vehicles():
         each = vehicle_of(name)
         axles = ", ".join(f"{weight / 1e3:g} kN at {x:g} m" for x, weight in each.axles)

@@ -80,7 +80,7 @@ def validation_table(rows: list[Validation]) -> Table:
     engines = list(dict.fromkeys(row.engine for row in rows))
     headings = ("#", "scenario", "alpha", "mu", "n", "mode", "published", "limit", *engines)
     words = {"scenario", "mode", *engines}
-    table = Table(*headings, right={*headings} - words, wrap=False)
+    table = Table(*headings, right={*headings} - words, wrap=False, below=len(engines))
     for name, number in numbered(rows).items():
         answers = {row.engine: row for row in rows if row.scenario == name}
         row = next(iter(answers.values()))
@@ -120,7 +120,7 @@ def validation_lines(rows: list[Validation]) -> list[str]:
 def structure_table(rows: list[StructureRow]) -> Table:
     """Lay out rows on structures for a terminal: a line an answer."""
     headings = ("structure", "over", "known", "published", "method", "answer", "")
-    table = Table(*headings, right={"known", "published"}, wrap=False)
+    table = Table(*headings, right={"known", "published"}, wrap=False, below=3)
     for row in rows:
         wanted = "" if row.expected is None else f"{row.expected:.8g}"
         known = row.expected_verdict.value if row.expected_verdict else wanted

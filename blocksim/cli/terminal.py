@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import shutil
+import sys
 import textwrap
 import time
 from collections.abc import Container, Generator, Sequence
@@ -19,7 +20,7 @@ from blocksim.common.progress import Progress as Report
 from blocksim.common.words import printable
 
 WIDE = 128
-"""Characters in a line of the widest table where no window says how many there are."""
+"""Characters in a line from which on no cell of a table has to be folded."""
 MOMENT = 0.5
 """What takes no longer has no bar [s]."""
 COLOURS = {"STANDS": "green", "COLLAPSES": "red", "UNDECIDED": "yellow"}
@@ -65,10 +66,16 @@ def bar() -> Generator[Report]:
 
 
 class Table(RichTable):
-    """A table of columns with headings, those of numbers to the right; cells are text."""
+    """A table of columns with headings, those of numbers to the right; cells are text.
 
-    def __init__(self, *headings: str, right: Container[str] = (), wrap: bool = True) -> None:
+    `below`: Columns, the last ones, that go below their row where the window has no room.
+    """
+
+    def __init__(
+        self, *headings: str, right: Container[str] = (), wrap: bool = True, below: int = 0
+    ) -> None:
         super().__init__(box=None, header_style="bold", pad_edge=False)
+        self.below = below
         for each in headings:
             side = "right" if each in right else "left"
             self.add_column(each, justify=side, no_wrap=not wrap)
@@ -79,11 +86,34 @@ class Table(RichTable):
 
 
 def show(table: Table) -> None:
-    """Print a table; in a narrow window its cells are folded."""
-    window = Console()
-    width = window.width if window.is_terminal else max(window.width, WIDE)
+    """Print a table that fits the window, or 80 characters where there is none."""
+    plain = Console(markup=False, emoji=False, highlight=False)
     for column in table.columns:
-        column.no_wrap = column.no_wrap and width >= WIDE
+        column.no_wrap = column.no_wrap and plain.width >= WIDE
         column.overflow = "fold"
-    plain = Console(width=width, markup=False, emoji=False)
-    plain.print(table)
+    # What a row is about is one word.
+    table.columns[0].no_wrap = True
+    below: list[str] = []
+    unlimited = plain.options.update(max_width=sys.maxsize)
+    if table.below and plain.measure(table, options=unlimited).maximum > plain.width:
+        below = _below(table, plain.width)
+    with plain.capture() as captured:
+        plain.print(table)
+    shown = captured.get().splitlines()
+    for line, words in zip(shown, ["", *below] if below else [""] * len(shown), strict=True):
+        click.echo("\n".join(each for each in (line.rstrip(), words) if each))
+
+
+def _below(table: Table, width: int) -> list[str]:
+    """Take columns out of a table, and return what goes below each row in their place."""
+    told = table.columns[-table.below :]
+    del table.columns[-table.below :]
+    names = [f"{each.header}: " if each.header else "" for each in told]
+    indent = " " * 4
+    return [
+        textwrap.fill(
+            "; ".join(name + cell for name, cell in zip(names, row, strict=True) if cell),
+            width, initial_indent=indent, subsequent_indent=indent,
+        )
+        for row in zip(*(map(str, each.cells) for each in told), strict=True)
+    ]  # fmt: skip
