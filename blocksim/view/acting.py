@@ -14,12 +14,12 @@ from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.shaking import Shaking
 from blocksim.blocks.space.extruded import UP
 from blocksim.view.arrows import forces_of, is_push
-from blocksim.view.canvas import Label, Panel, Shape, arrow, colour, width_of
+from blocksim.view.canvas import Label, Panel, Shape, arrow, colour, mixed, width_of
 from blocksim.view.following import View
 from blocksim.view.placing import UPRIGHT
 from blocksim.view.solidstage import SolidStage
 from blocksim.view.stage import Stage
-from blocksim.view.style import DEAD, INK, LIVE, QUIET
+from blocksim.view.style import DEAD, GROUND, INK, LIVE, PAPER, QUIET
 
 LONGEST = 0.15
 """Share of a panel's height that the largest load is long."""
@@ -33,6 +33,8 @@ POINTS = 240
 """Of a pulse."""
 FIXED = 0.25
 """Distance between marks that stand still as the ground moves [size]."""
+ROD, FAR = 0.3, 6.0
+"""Half the width of a rod that holds a support, over its radius, and its length [size]."""
 PUSH = 56.0
 """Length of the arrow of a push, beside its words [pixels at 720]."""
 
@@ -66,6 +68,31 @@ class Acting:
             tail = tip - long * float(np.linalg.norm(share)) * way
             drawn += arrow(tail, tip, colour(LIVE if kind == "live" else DEAD), self._size)
         return drawn
+
+    def behind(self, moment: Any) -> list[Shape]:
+        """Draw rods that hold supports which move, from beyond the picture or the ground."""
+        stage, size = self._stage, self._stage.assembly.size
+        built = stage.recording.poses[0, :, :2]
+        edge, fill = (
+            mixed(colour(GROUND), colour(INK), 0.45),
+            mixed(colour(GROUND), colour(PAPER), 0.35),
+        )
+        rods: list[Shape] = []
+        moves = stage.recording.problem.moves
+        for block, move in zip(sorted(stage.carriers), moves, strict=True):
+            place = stage.point_at(moment, block, np.zeros(3))
+            away = np.append(move.direction, 0.0) / np.hypot(*move.direction)
+            away *= 1.0 if away[:2] @ (built[block] - built.mean(axis=0)) > 0 else -1.0
+            long = FAR if away[1] >= -0.5 else (place[1] - stage.ground) / -away[1]
+            beside = (
+                ROD * stage.assembly.reach[block] / size * np.array([-away[1], away[0], 0.0])
+            )
+            end = place + long * away
+            outline = np.stack([place - beside, end - beside, end + beside, place + beside])
+            rods.append(
+                Shape(self._view.places(outline), fill=fill, edge=edge, width=self._size)
+            )
+        return rods
 
     def aside(self, moment: Any, share: float) -> tuple[list[Shape], list[Label]]:
         """Draw what has its own place: a push, the pulse with the time, how far supports are.

@@ -87,7 +87,8 @@ def legend_of(
     shapes, labels = list[Shape](), list[Label]()
     x, y = width - 24 * size, 15 * size
     for words, tone in reversed(entries):
-        x -= width_of(words, LETTER * size)
+        # Small letters are set a little wider than they are measured.
+        x -= 1.06 * width_of(words, LETTER * size)
         labels.append(Label(x, y, words, size=LETTER * size))
         line = np.array([[x - 28 * size, y + 5 * size], [x - 8 * size, y + 5 * size]])
         shapes.append(

@@ -189,7 +189,7 @@ class Film:
                 around = [*zoomed(view.still, share, view.centre), *bar]
                 labels += words
             beside, said = acting.aside(moment, share)
-            blocks = [*view.shapes(moment), *acting.shapes(moment)]
+            blocks = [*acting.behind(moment), *view.shapes(moment), *acting.shapes(moment)]
             parts.append((panel, [*around, *zoomed(blocks, share, view.centre), *beside]))
             labels += said
         size = self._size
