@@ -19,6 +19,8 @@ from blocksim.view.solidstage import SolidStage
 from blocksim.view.stage import Stage
 from blocksim.view.style import DASHES, QUIET
 
+CLOCK = 345.0
+"""Width of the clock and of what stands beside it, left of the legend [pixels at 720]."""
 LETTER = 13.0
 """Size of the legend's letters [pixels at 720]."""
 LENGTH = 6.0
@@ -86,9 +88,12 @@ def legend_of(
     """Explain colours by words, from the lower right corner of a frame so wide."""
     shapes, labels = list[Shape](), list[Label]()
     x, y = width - 24 * size, 15 * size
-    for words, tone in reversed(entries):
-        # Small letters are set a little wider than they are measured.
-        x -= 1.06 * width_of(words, LETTER * size)
+    # Small letters are set a little wider than they are measured.
+    wide = [1.06 * width_of(words, LETTER * size) for words, _ in entries]
+    room = (x - CLOCK * size - sum(wide)) / max(1, len(entries))
+    apart = min(54 * size, max(36 * size, room))
+    for (words, tone), long in zip(reversed(entries), reversed(wide), strict=True):
+        x -= long
         labels.append(Label(x, y, words, size=LETTER * size))
         line = np.array([[x - 28 * size, y + 5 * size], [x - 8 * size, y + 5 * size]])
         shapes.append(
@@ -97,7 +102,7 @@ def legend_of(
                 dash=DASHES.get(tone, ()),
             )
         )  # fmt: skip
-        x -= 54 * size
+        x -= apart
     return shapes, labels
 
 
