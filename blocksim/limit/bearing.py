@@ -19,7 +19,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import soil_bearing
 from blocksim.common.later import sparse
-from blocksim.limit.cones import Cones
+from blocksim.limit.cones import Cones, most
 from blocksim.limit.linear import LinearProgramme, Optimum
 
 LEAST = 1e-9
@@ -46,18 +46,13 @@ class Bearing:
     ) -> tuple[Optimum, Array]:
         """Make the factor on a column as large as the balance of forces allows.
 
-        Returns: As of `blocksim.limit.programme.most`.
+        Returns: As of `blocksim.limit.cones.most`.
         Returns `shares`, (loads,): Of what soil bears; empty where nothing balances.
         """
         cones, count = self._cones, len(self._loads)
-        low, high = cones.bounds
-        ends = (
-            np.concatenate([low, np.zeros(count), bounds[:1]]),
-            np.concatenate([high, np.ones(count), bounds[1:]]),
-        )
-        cost = np.append(np.zeros(cones.count + count), -1.0)
-        matrix = sparse.hstack([cones.balance, self._columns, column], format="csc")
-        found = (solver or LinearProgramme()).solve(cost, matrix, (right, right), ends)
+        columns = sparse.hstack([self._columns, column], format="csc")
+        ends = np.append(np.zeros(count), bounds[0]), np.append(np.ones(count), bounds[1])
+        found = most(cones, columns, right, ends, solver)
         if not found.exists:
             return found, np.zeros(0)
         parts, shares, factor = np.split(found.values, [cones.count, cones.count + count])
@@ -72,12 +67,12 @@ class Bearing:
             if share > LEAST
         )
         soil = replace(problem.soil, passive=(0.0, 0.0))
-        used, most = (
+        used, allowed = (
             sum(float(np.hypot(*load.force)) for load in loads) for loads in (more, self._loads)
         )
         note = (
             f"where it is moved into the fill bears {used / 1e3:.4g} kN more than it presses, "
-            f"of {most / 1e3:.4g} kN that it may bear"
+            f"of {allowed / 1e3:.4g} kN that it may bear"
         )
         return replace(
             problem, soil=soil, dead=(*problem.dead, *more), notes=(*problem.notes, note)

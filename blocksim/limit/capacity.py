@@ -18,10 +18,10 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.common.later import sparse, sparse_linalg
 from blocksim.limit.bearing import Bearing, bears, settled
-from blocksim.limit.cones import ROUND_OFF, Cones
+from blocksim.limit.cones import ROUND_OFF, Cones, most
 from blocksim.limit.crushing import Crushing
 from blocksim.limit.linear import LinearProgramme, Optimum
-from blocksim.limit.programme import most, most_common, scaled
+from blocksim.limit.programme import most_common, scaled
 from blocksim.limit.symmetry import mirror_of
 
 

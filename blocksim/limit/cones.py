@@ -7,12 +7,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.rows import column
 from blocksim.common.later import sparse, sparse_linalg
+from blocksim.limit.linear import LinearProgramme, Optimum
 
 ROUND_OFF = 1e-9
 """Lack of force that is round-off, over what the joint or the block carries."""
@@ -176,6 +177,24 @@ class Cones:
             found, self._end, np.column_stack([self._normal, self._tangent]) * parts[:, None]
         )
         return found.reshape(-1, 2, 2)
+
+
+def most(
+    cones: Cones,
+    columns: Any,
+    right: Array,
+    bounds: tuple[ArrayLike, ArrayLike],
+    solver: LinearProgramme | None = None,
+) -> Optimum:
+    """Make the factor on the last of some columns as large as the balance of forces allows.
+
+    `bounds`: Least and greatest factor on each of them.
+    """
+    low, high = (np.append(each, end) for each, end in zip(cones.bounds, bounds, strict=True))
+    cost = np.zeros(low.size)
+    cost[-1] = -1.0
+    matrix = sparse.hstack([cones.balance, columns], format="csc")
+    return (solver or LinearProgramme()).solve(cost, matrix, (right, right), (low, high))
 
 
 def joint_weights(problem: Problem, weights: Array) -> Array:

@@ -26,7 +26,7 @@ from blocksim.common.errors import Unsolved
 from blocksim.common.later import sparse
 from blocksim.limit.bearing import settled
 from blocksim.limit.bodies import alike, widened
-from blocksim.limit.cones import ROUND_OFF, Cones
+from blocksim.limit.cones import ROUND_OFF, Cones, most
 from blocksim.limit.exact import Exact
 from blocksim.limit.interior import most_inside
 from blocksim.limit.linear import MANY, LinearProgramme, Optimum
@@ -230,20 +230,6 @@ def extreme(
     return (solver or LinearProgramme()).solve(
         cost, cones.balance, (right, right), cones.bounds
     )
-
-
-def most(
-    cones: Cones,
-    column: Any,
-    right: Array,
-    bounds: tuple[float, float],
-    solver: LinearProgramme | None = None,
-) -> Optimum:
-    """Make the factor on a column as large as the balance of forces allows."""
-    low, high = (np.append(each, end) for each, end in zip(cones.bounds, bounds, strict=True))
-    cost = np.append(np.zeros(cones.count), -1.0)
-    matrix = sparse.hstack([cones.balance, column], format="csc")
-    return (solver or LinearProgramme()).solve(cost, matrix, (right, right), (low, high))
 
 
 def scaled(rates: Array) -> Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from blocksim.blocks.acting import Load
@@ -119,6 +121,4 @@ def _face(joint: Joint, assembly: Assembly) -> FaceJoint:
 
 def _load(load: Load) -> Load:
     point = None if load.point is None else UP @ load.point
-    return Load(
-        force=UP @ load.force, blocks=load.blocks, point=point, per_weight=load.per_weight
-    )
+    return replace(load, force=UP @ load.force, point=point)
