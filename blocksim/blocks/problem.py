@@ -248,8 +248,7 @@ class Problem(Shown, Generic[Blocks]):
         finite = is_number(tilt, -math.inf, math.inf) and math.isfinite(tilt)
         require(finite, "tilt", tilt, "a finite angle")
         still, cos, sin = self.unturned, math.cos(tilt), math.sin(tilt)
-        turned = still + cos * (self.gravity - still) + sin * self.across
-        return replace(self, gravity=turned)
+        return replace(self, gravity=still + cos * (self.gravity - still) + sin * self.across)
 
     def leaning(self, lean: float) -> Self:
         """Return the same with gravity out of the plane by an angle [rad], not as it was."""
@@ -346,5 +345,4 @@ class Problem(Shown, Generic[Blocks]):
     @property
     def live_forces(self) -> Array:
         """Forces and moments of live loads at a factor of 1, units as of `applied_forces`."""
-        found = np.zeros((len(self.assembly.blocks), self.assembly.columns))
-        return sum((self.assembly.of_load(load) for load in self.live), found)
+        return replace(self, dead=(), load=1.0).loads()

@@ -48,7 +48,7 @@ def overlap_each_other(parts: Sequence[Array], tolerance: float) -> bool:
 
 
 def hull(parts: Sequence[Array]) -> Array:
-    """Return the convex hull of polygons, counter-clockwise."""
+    """Return the convex hull of polygons, counter-clockwise; of what has no width an end."""
     return _corners(shapely.MultiPoint(np.concatenate(parts)).convex_hull)
 
 
@@ -70,8 +70,7 @@ def rings(parts: Sequence[Array]) -> list[Array]:
 
 def _corners(region: Any) -> Array:
     """Return the corners of shapely's polygon, counter-clockwise."""
-    turned: Any = shapely.orient_polygons(region)
-    return shapely.get_coordinates(turned.exterior)[:-1]
+    return shapely.get_coordinates(shapely.orient_polygons(region))[:-1]
 
 
 def overlaps(

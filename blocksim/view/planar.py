@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
+from blocksim.blocks.regions import hull
 from blocksim.view.canvas import Label, Panel, Shape, colour, edge_width, mixed, stone_tones
 from blocksim.view.drawing import HINGES, words_of
 from blocksim.view.stage import Stage
@@ -155,8 +155,7 @@ def _outline(corners: Array) -> Array:
     near, far = corners[..., :2]
     if (np.abs(near - far) <= 1e-9).all():
         return near
-    both = corners[..., :2].reshape(-1, 2)
-    return both[ConvexHull(both).vertices]
+    return hull([near, far])
 
 
 def _circle(centre: Array, radius: float) -> Array:

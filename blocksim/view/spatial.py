@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.regions import hull
 from blocksim.view.camera import Camera, Face, Piece
 from blocksim.view.canvas import Colour, Label, Panel, Shape, colour, edge_width, mixed
 from blocksim.view.solidstage import SolidStage
@@ -134,8 +134,8 @@ class SpatialView:
         for each in pieces:
             down = each.corners - (each.corners[:, 1:2] - level) / LIGHT[1] * LIGHT
             down[:, 1] = level
-            hull = _hull(self.places(down)) if each.corners[:, 1].max() > level else None
-            hulls += [] if hull is None else [hull]
+            if each.corners[:, 1].max() > level:
+                hulls.append(hull([self.places(down)]))
         ground = mixed(colour(PAPER), colour(GROUND), 0.75)
         dark = mixed((0.0, 0.0, 0.0, 1.0), ground, SHADOW)
         soft = mixed(dark, ground, 0.5)
@@ -154,11 +154,3 @@ def _lit(tone: Colour, face: Face) -> Colour:
 def _edge(face: Face) -> Colour:
     """Return the colour of an edge: a seam is as bright as its face."""
     return _lit(face.tone, face) if face.edge == face.tone else face.edge
-
-
-def _hull(points: Array) -> Array | None:
-    """Return the corners of what points span; None where that has no width."""
-    try:
-        return points[ConvexHull(points).vertices]
-    except QhullError:
-        return None
