@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint, Support
+from blocksim.blocks.bodies import connected
 from blocksim.blocks.given import Body as Body
 from blocksim.blocks.given import GivenJoint, as_given
 from blocksim.blocks.outlines import Extents, extents, step_of
@@ -268,18 +269,10 @@ def _pairs(bodies: Sequence[Body], pairs: Sequence[tuple[int, int]]) -> str:
 
 def _require_held(found: Sequence[tuple[Touch, object]], bodies: Sequence[Body]) -> None:
     """Check that joints lead from every block to a fixed one, or one that is free."""
-    leads = list(range(len(bodies)))
-
-    def root(index: int) -> int:
-        while leads[index] != index:
-            leads[index] = leads[leads[index]]
-            index = leads[index]
-        return index
-
-    for touch, _ in found:
-        leads[root(touch.one)] = root(touch.other)
-    held = {root(index) for index, body in enumerate(bodies) if body.fixed or body.free}
-    loose = next((index for index in range(len(bodies)) if root(index) not in held), None)
+    pairs = np.array([(touch.one, touch.other) for touch, _ in found], dtype=np.int64)
+    group = connected(len(bodies), *pairs.reshape(-1, 2).T)
+    held = group[[body.fixed or body.free for body in bodies]]
+    loose = next(iter(np.flatnonzero(~np.isin(group, held)).tolist()), None)
     if loose is not None:
         raise InputError(
             f"block {name_of(bodies, loose)}",
