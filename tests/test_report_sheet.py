@@ -200,6 +200,47 @@ def test_a_thickness_that_is_a_share_of_the_least_is_told(tmp_path: Path) -> Non
     assert "thickness over the least one that stands, as built" in text
 
 
+SPANS = """
+kind = "arcade"
+friction = 0.6
+density = 20e3
+spans = 2
+pier_width = 1.4
+pier_height = 2.5
+each_span = [{}, { span = 4.0, rise = 2.0, thickness = 0.4, voussoirs = 14 }]
+arch = { kind = "circular-arch", span = 6.0, rise = 3.0, thickness = 0.5, fill = 0.5 }
+"""
+
+
+def test_what_is_given_and_what_has_moved_is_told(tmp_path: Path) -> None:
+    """Spans of their own, fill in kN/m3, a push by its name, hinges of what has spread."""
+    (tmp_path / "spans.toml").write_text(SPANS)
+    spread = ("--span", "8", "--rise", "3", "--thickness", "0.6", "--voussoirs", "14")
+    asks = {
+        "spans": (str(tmp_path / "spans.toml"),),
+        "pushed": ("column", "--mu", "0.7", "--unit-weight", "20", "--push", "0.15"),
+        "spread": (*spread, "--mu", "0.7", "--unit-weight", "20", "--spread", "0.02"),
+    }
+    said: dict[str, dict[str, str]] = {}
+    for name, asked in asks.items():
+        page = tmp_path / f"{name}.html"
+        assert inside("report", *asked, "--out", str(page)).returncode == 0
+        said[name] = rows_of(page)
+    spans = said["spans"]
+    told = [spans[f"each_span 2: {each}"].split(" | ")[0] for each in ("span", "voussoirs")]
+    assert told == ["4 m", "14"]
+    assert spans["unit weight of fill"] == "20 kN/m\N{SUPERSCRIPT THREE} | "
+    # Six drums of 0.6 m, 1 m wide: 72 kN, of which 0.15 push.
+    assert said["pushed"]["push"] == "10.80 kN/m | 0.15 of each weight to the right"
+    hinged = [
+        name for name, cells in said["spread"].items() if cells.split(" | ")[3:4] == ["hinge"]
+    ]
+    assert len(hinged) == 3
+    assert "least thrust" not in said["spread"]
+    assert "statics alone say it" in said["spread"]["thrust"]
+    assert len(said["spread"]["left"].split(" | ")) == 2
+
+
 PAPER = (182, 273)
 """What is printed on of A4, less the margins of the page [mm]."""
 MM = 96 / 25.4

@@ -19,7 +19,7 @@ from blocksim.view.solidstage import SolidStage
 from blocksim.view.stage import Stage
 from blocksim.view.style import DASHES, QUIET
 
-CLOCK = 345.0
+CLOCK = 405.0
 """Width of the clock and of what stands beside it, left of the legend [pixels at 720]."""
 LETTER = 13.0
 """Size of the legend's letters [pixels at 720]."""
