@@ -29,16 +29,18 @@ from blocksim.engines.solid.step import Answer, Step, projected
 
 STIFF = 1e5
 """Springs over the mean mass."""
+STIFFER = 1e2, 1e3, 1e4, STIFF
+"""The same in turn from a guess in motion: soft ones are not lost where blocks jam."""
 ROUNDS, TRIES = 25, 60
 """Most times that springs follow, and most of Newton's steps for each."""
 BRIEFLY = 25
 """Most of Newton's steps in motion, where another guess costs as much."""
 HALVINGS = 6
-TURNS, LOOKS, LAGS = 20000, 20, 5.0
+TURNS, LOOKS, LAGS = 16000, 20, 5.0
 """Most turns of alternating directions, after how many springs may change, and by how much more
 one of two lags than the other where they do."""
-LATE, LAWFUL = 2000, 1e-6
-"""Turns after which this residual will do."""
+PAUSES, LAWFUL = (1000, 4000), 3e-6
+"""Turns after which stiff springs are tried, and the residual in motion that then will do."""
 UNSOLVED = 1e-2
 """Residual of what is no solution."""
 NEAR = 1e-3
@@ -78,12 +80,16 @@ def solve(step: Step, last: Array | None, turns: int = TURNS) -> Answer:
             best = _gone_on(step, last[:, 0], last[:, 1], briefly=briefly)
     begun = last if briefly else None
     guesses = _guesses(step, begun, turns) if best.residual > enough else ()
+    enough = LAWFUL if briefly else enough
     for guess in guesses:
-        found = _followed(step, guess, briefly=briefly)
-        if found.residual < best.residual:
-            best = found
-        if best.residual <= enough:
-            break
+        forces = guess
+        for stiff in STIFFER if briefly else (STIFF,):
+            found = _followed(step, forces, stiff=stiff, briefly=briefly)
+            forces = found.forces
+            if found.residual < best.residual:
+                best = found
+            if best.residual <= enough:
+                return best
     if last is not None and not near and best.residual > enough:
         found = _followed(step, last[:, 0])
         best = found if found.residual < best.residual else best
@@ -114,11 +120,11 @@ def _guesses(step: Step, last: Array | None, turns: int) -> Iterator[Array]:
             yield less
     # Near the limit of rest, which is not to be had by now, no forces lead to motion.
     begun = None if last is None else opening
-    yield _alternated(step, np.zeros_like(step.drift) if begun is None else begun, turns)
+    yield from _alternated(step, np.zeros_like(step.drift) if begun is None else begun, turns)
 
 
-def _alternated(step: Step, p: Array, turns: int) -> Array:
-    """Return forces nearest to the law on the way of alternating directions from some.
+def _alternated(step: Step, p: Array, turns: int) -> Iterator[Array]:
+    """Give forces nearest to the law so far, on the way of alternating directions from some.
 
     Blocks go where forces and springs let them, then each force to the nearest point of its
     cone, in turn (Boyd and others 2011). What slips opens by mu times that, less what it last
@@ -144,8 +150,10 @@ def _alternated(step: Step, p: Array, turns: int) -> Array:
         residual = step.residual(step.pushed_by(p), p)
         if residual < least:
             best, least = p, residual
-        if least <= (SOLVED if turn < LATE else LAWFUL):
+        if least <= SOLVED:
             break
+        if turn in PAUSES:
+            yield best
         u = step.velocities(x)
         u[:, 0] += mu * _slip(u)
         apart = float(np.abs(opens - u).max())
@@ -157,7 +165,7 @@ def _alternated(step: Step, p: Array, turns: int) -> Array:
         else:
             continue
         factored = bands.factored(step.rows, np.full((1, 3), stiff))
-    return best
+    yield best
 
 
 def _nearest(pushed: Array, friction: Array) -> Array:
@@ -189,7 +197,12 @@ def _gone_on(step: Step, p: Array, u: Array, *, briefly: bool) -> Answer:
 
 
 def _followed(
-    step: Step, forces: Array, x: Array | None = None, *, briefly: bool = False
+    step: Step,
+    forces: Array,
+    x: Array | None = None,
+    *,
+    stiff: float = STIFF,
+    briefly: bool = False,
 ) -> Answer:
     """Let springs follow forces until these are the solution, or come no nearer."""
     p = forces
@@ -198,7 +211,7 @@ def _followed(
     best = Answer(x, p, step.residual(x, p))
     worse, exact = 0, ENOUGH if briefly else EXACT
     for _ in range(ROUNDS):
-        x, p, left = _balanced(step, x, p, briefly=briefly)
+        x, p, left = _balanced(step, x, p, stiff, briefly=briefly)
         if not np.isfinite(p).all():
             return best
         found = Answer(x, p, step.residual(x, p))
@@ -211,26 +224,26 @@ def _followed(
 
 
 def _balanced(
-    step: Step, x: Array, forces: Array, *, briefly: bool
+    step: Step, x: Array, forces: Array, stiff: float, *, briefly: bool
 ) -> tuple[Array, Array, bool]:
     """Find accelerations that balance springs which begin with forces, by Newton's method.
 
     And the forces, and whether it had to be left before it got there.
     """
     scale = 1.0 + float(np.abs(step.free).max(initial=0.0))
-    left, q, pushed = _imbalance(step, x, forces)
+    left, q, pushed = _imbalance(step, x, forces, stiff)
     size = float(np.abs(left).max())
     for _ in range(BRIEFLY if briefly else TRIES):
         if size <= (ROUGHLY if briefly else FINELY) * scale * (1 + float(np.abs(q).max())):
             return x, q, False
-        change = step.with_springs(STIFF * _given_way(pushed, step.friction), -left)
+        change = step.with_springs(stiff * _given_way(pushed, step.friction), -left)
         if change is None:
             return x, q, True
         share: float = 1.0
         best: tuple[float, Array, tuple[Array, Array, Array]] | None = None
         for _ in range(HALVINGS):
             tried: Array = x + share * change
-            there = _imbalance(step, tried, forces)
+            there = _imbalance(step, tried, forces, stiff)
             reached = float(np.abs(there[0]).max())
             if best is None or reached < best[0]:
                 best = (reached, tried, there)
@@ -244,9 +257,9 @@ def _balanced(
     return x, q, True
 
 
-def _imbalance(step: Step, x: Array, forces: Array) -> tuple[Array, Array, Array]:
+def _imbalance(step: Step, x: Array, forces: Array, stiff: float) -> tuple[Array, Array, Array]:
     """Return what is left over, the forces within friction, and what springs ask for."""
-    pushed = forces - STIFF * step.velocities(x)
+    pushed = forces - stiff * step.velocities(x)
     q = projected(pushed, step.friction)
     return x - step.pushed_by(q), q, pushed
 
