@@ -11,8 +11,8 @@ class Engine:
     SETTINGS = {
         "documented": ("its defaults: 2 ms, solref 0.02 1, pyramidal cone", {"step": 0.002}),
         "best": (
-            "1 ms, solref 0.002 1, solimp 0.99 0.9999 0.001, elliptic cone, impratio 100",
-            {"step": 0.001, "best": True},
+            "2 ms, solref 0.004 1, solimp 0.99 0.9999 0.001, elliptic cone, impratio 10",
+            {"step": 0.002, "best": True},
         ),
     }
 
@@ -22,7 +22,7 @@ class Engine:
         option.timestep = settings["step"]
         option.gravity = [*scene["gravity"], 0.0][:3]
         if "best" in settings:
-            option.cone, option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 100
+            option.cone, option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 10
         self.data, self.model, self.speeds = None, None, {}
 
     def add(self, given):
@@ -51,7 +51,7 @@ class Engine:
             geom = body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh.name)
             geom.friction = [self.scene["friction"], 0, 0]
             if "best" in self.settings:
-                geom.solref[:2], geom.solimp[:3] = [0.002, 1], [0.99, 0.9999, 0.001]
+                geom.solref[:2], geom.solimp[:3] = [0.004, 1], [0.99, 0.9999, 0.001]
         return name
 
     def _ready(self):

@@ -12,7 +12,7 @@ class Engine:
     NAME, VERSION, DIMENSIONS = "PhysX 5", f"sapien {sapien.__version__}", (2, 3)
     SETTINGS = {
         "documented": ("SAPIEN's defaults: 1/100 s, 10 and 1 iterations", {"step": 0.01}),
-        "best": ("1/960 s, 100 and 50 iterations", {"step": 1 / 960, "sweeps": (100, 50)}),
+        "best": ("1/240 s, 30 and 1 iterations", {"step": 1 / 240, "sweeps": (30, 1)}),
     }
 
     def __init__(self, scene, settings):

@@ -13,8 +13,8 @@ class Engine:
     SETTINGS = {
         "documented": ("its defaults: 1/240 s, 50 iterations, hulls", {"step": 1 / 240}),
         "best": (
-            "1/960 s, 300 iterations, residual 0, contactSlop 1e-5, maximal coordinates",
-            {"step": 1 / 960, "sweeps": 300},
+            "1/240 s, 200 iterations, residual 0, contactSlop 1e-5, maximal coordinates",
+            {"step": 1 / 240, "sweeps": 200},
         ),
     }
 
