@@ -140,6 +140,8 @@ def main(
     if answers is not None:
         kept = _renewed(kept, scores_of(answers))
         write_rows(out / KEPT.name, [row for score in kept for row in rows_of(score)])
+        # Rounded as they are kept.
+        kept = read(out / KEPT.name)
     scores = sorted(kept, key=lambda each: (each.nearest() or NONE, each.wrong))
     records = [score.record() for score in scores]
     (out / "known.json").write_text(json.dumps(records, separators=(",", ":")) + "\n")
