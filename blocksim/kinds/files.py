@@ -132,7 +132,8 @@ def named_file(
         path = str(known.get(path, path))
         ending = Path(path).suffix
     endings = ".json, .toml, .dxf, .svg, .obj, .stl, .ply or .glb"
-    allowed = f"an existing structure file, {endings}, or a shipped structure{near}"
+    allowed = f"an existing structure file, {endings}, or a shipped structure"
+    allowed += f" (blocksim scenarios lists them){near}"
     require(ending in WRITTEN or ending in OTHERS, "structure", str(path), allowed)
     text = b""
     if ending in WRITTEN:
