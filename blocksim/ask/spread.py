@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from blocksim.ask.bracket import Event, OpenJoint
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, side_name
 from blocksim.blocks.problem import Move, Problem
@@ -42,29 +43,6 @@ FAST = 30.0
 """Speed of blocks, over that of their supports, from which on they fall."""
 STARTS = 1e-5
 """Acceleration from which on blocks move on supports that have stopped [g]."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class OpenJoint:
-    """A joint that is open at an end or both, by the bodies on its two sides."""
-
-    a: str
-    b: str
-    state: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Event:
-    """Something that happens as supports move.
-
-    `value`: How far the supports are [m].
-    `what`: As of `blocksim.limit.spreading.Event`.
-    `joints`: Those that are open after it.
-    """
-
-    value: float
-    what: str
-    joints: tuple[OpenJoint, ...]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import Any, Literal, TypedDict
 
+from blocksim.ask.bracket import Event
 from blocksim.ask.ends import Stands
-from blocksim.ask.spread import Event
 from blocksim.simulation.verdict import Evidence
 
 Number = float | Literal["inf", "-inf"]
