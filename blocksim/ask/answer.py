@@ -33,6 +33,29 @@ SOUGHT = 500
 """Joints up to which what a structure carries is found within seconds."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class OpenJoint:
+    """A joint that is open at an end or both, by the bodies on its two sides."""
+
+    a: str
+    b: str
+    state: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Event:
+    """Something that happens as supports move.
+
+    `value`: How far the supports are [m].
+    `what`: As of `blocksim.limit.spreading.Event`.
+    `joints`: Those that are open after it.
+    """
+
+    value: float
+    what: str
+    joints: tuple[OpenJoint, ...]
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Check(Shown, Generic[Blocks]):
     """Answer to *does it stand*, with its evidence.

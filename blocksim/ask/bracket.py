@@ -24,33 +24,11 @@ from blocksim.simulation.verdict import Evidence, aside, reason_of
 
 if TYPE_CHECKING:
     from blocksim.arch.answers import ArchBracket
+    from blocksim.ask.answer import Event
     from blocksim.limit.proof import Proof
 
 USUAL = "thickness"
 """What is bracketed over where nothing is said."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class OpenJoint:
-    """A joint that is open at an end or both, by the bodies on its two sides."""
-
-    a: str
-    b: str
-    state: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Event:
-    """Something that happens as supports move.
-
-    `value`: How far the supports are [m].
-    `what`: As of `blocksim.limit.spreading.Event`.
-    `joints`: Those that are open after it.
-    """
-
-    value: float
-    what: str
-    joints: tuple[OpenJoint, ...]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from blocksim.ask.bracket import Event, OpenJoint
+from blocksim.ask.answer import Event, OpenJoint
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, side_name
 from blocksim.blocks.problem import Move, Problem

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any, Literal, TypedDict
 
-from blocksim.ask.bracket import Event
+from blocksim.ask.answer import Event
 from blocksim.ask.ends import Stands
 from blocksim.simulation.verdict import Evidence
 
