@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import replace
 
+import numpy as np
+from scipy.optimize import brentq
+
+from blocksim import Arch
+from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.theory.equations import Value, shape
 
 
@@ -31,3 +36,17 @@ def whole_thrust(half_angle: Value, eta: Value) -> Value:
 def tangency_thrust(beta: Value, eta: Value) -> Value:
     """Thrust whose line is tangent to the intrados at beta, h_e (4)."""
     return beta / np.tan(beta) - eta / (2 - eta)
+
+
+def least_thickness_by_program(
+    half_angle: float, mu: float, voussoirs: int, weight: str = "centreline"
+) -> float | None:
+    """Least thickness at which the program (16) has the value zero; None if above 2."""
+    arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
+
+    def missing(eta: float) -> float:
+        return mechanism(replace(arch, eta=eta), mu).extra_strength
+
+    if missing(2.0) > 0:
+        return None
+    return float(brentq(missing, 1e-9, 2.0, xtol=1e-15, rtol=1e-14))

@@ -22,8 +22,10 @@ from worlds import (
 
 from analysis.structure_cases import ASIDE, MOST, Question, answered, questions
 from blocksim import Assembly, Joint, JointState, Problem, Verdict, equilibrium, structure_of
-from blocksim.engines.contact import banded, solver
+from blocksim.engines.contact import banded, interior, path_following, solver
+from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.geometry import Geometry
+from blocksim.engines.contact.step import Answer, Step
 from tests.certificates import certificate
 
 MOVED = [
@@ -308,6 +310,45 @@ def falling_wall(courses: int = 8, length: float = 3) -> Problem:
     table = {"kind": "wall", "courses": courses, "length": length, "friction": 0.7}
     wall = structure_of(table)
     return wall.tilted(math.radians(1.3 * 29.725116))
+
+
+def test_contacts_that_are_told_are_found_no_better_on_a_path(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # Its forces are known to 1e-9 and no better; a path of 900 systems once ended there, too.
+    def path_from_apart(*_: object) -> None:
+        raise AssertionError("a path is followed")
+
+    monkeypatch.setattr(solver, "path_from_apart", path_from_apart)
+    onset = observe(falling_wall(), "direct", moving=False).onset
+    assert onset.verdict is Verdict.COLLAPSES
+
+
+def test_a_path_from_a_guess_is_short(monkeypatch: pytest.MonkeyPatch) -> None:
+    # From all apart it takes 873 systems. Where blocks slide there may be several answers; what
+    # is found has to be one.
+    systems: list[int] = []
+
+    def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Any, Any, int]:
+        if dilates:
+            return interior.central_path(step, cones, dilates=True)
+        return np.zeros_like(step.free), np.zeros_like(cones.offset), 0
+
+    def path_from_guess(step: Step, guess: Answer, *most: int) -> Answer | None:
+        end = path_following.path_from_guess(step, guess, *most)
+        systems.append(end.systems if end else 0)
+        return end
+
+    monkeypatch.setattr(solver, "central_path", central_path)
+    monkeypatch.setattr(solver, "path_from_guess", path_from_guess)
+    monkeypatch.setattr(solver, "path_from_apart", lambda *_: pytest.fail("from all apart"))
+    world = world_of(falling_wall(), 1e-3)
+    assert np.abs(world.hold(1)).max() > 0.1
+    assert (world.quality().residual or 0.0) < 1e-8
+    # The first path begins at the guess that is none here, and leads nowhere.
+    assert len(systems) == 2
+    assert systems[0] == 0
+    assert 50 < systems[1] < 300
 
 
 @pytest.mark.parametrize("mu", [20.0, math.inf])

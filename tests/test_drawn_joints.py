@@ -93,6 +93,15 @@ def _answers(degrees: int, decimals: int) -> tuple[Verdict, int]:
     return check(problem, method="limit").verdict, len(problem.assembly.joints)
 
 
+@pytest.mark.long
+def test_walls_at_every_rotation_have_one_verdict_whatever_their_decimals():
+    """460 files."""
+    for degrees in range(46):
+        found = {_answers(degrees, decimals) for decimals in range(3, 13)}
+        assert found == {_answers(degrees, 15)}, degrees
+        assert {joints for _, joints in found} == {32}
+
+
 @settings(max_examples=15, deadline=None)
 @given(degrees=st.integers(0, 45), decimals=st.integers(3, 12))
 def test_rounding_changes_no_verdict(degrees: int, decimals: int):

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from four_links import Arch
 from recorded import drawn_words
-from rocking import G, block, on_pulse, rocks
+from rocking import G, block, on_pulse, on_record, rocks
 from scipy.integrate import solve_ivp
 from worlds import DIRECT, Blocks, Simulation
 
@@ -79,6 +79,33 @@ def test_a_sine_that_overturns_is_said_to(duration: float, amplitude: float) -> 
     assert rocks(1.0, 4.0, ground, shaken=duration).overturns
     seen = check(on_pulse(block(), "full-sine", amplitude, duration), method="direct")
     assert seen.verdict is not Verdict.STANDS
+
+
+def record(peak: float) -> tuple[np.ndarray, np.ndarray]:
+    """Ten seconds in 4,000 samples."""
+    random, times = np.random.default_rng(1), np.linspace(0.0, 10.0, 4000)
+    found = np.zeros_like(times)
+    for often in np.linspace(0.5, 8.0, 40):
+        size, phase = random.normal(), random.uniform(0, 6.28)
+        found += size * np.sin(2 * math.pi * often * times + phase)
+    found *= np.sin(math.pi * times / 10.0) ** 0.5
+    return times, found * peak / np.abs(found).max()
+
+
+@LONG
+def test_a_record_rocks_a_block_as_far_as_housner_says() -> None:
+    times, ground = record(0.35)
+    wanted = rocks(
+        1.0,
+        4.0,
+        lambda now: float(np.interp(now, times, ground, 0.0, 0.0)),
+        shaken=10.0,
+        until=12.0,
+        longest=0.005,
+    )
+    seen = check(on_record(block(), times, ground), method="direct").shaken
+    assert len(wanted.impacts) > 50
+    assert seen.rocking.rotation == pytest.approx(wanted.largest, rel=0.03)
 
 
 @pytest.mark.parametrize(

@@ -128,6 +128,16 @@ def test_limit(degrees: float, mu: float, count: int, weight: str) -> None:
     assert one.thrust == pytest.approx(float(thrust), rel=RELATIVE)
 
 
+@pytest.mark.parametrize("mu", [5e5, 1e6, 1e9, 1e12])
+def test_overturning_slides_at_any_finite_friction(mu: float) -> None:
+    found = theory.least_thickness(math.radians(155), mu)
+    assert found.modes == (Mode.RS,)
+    # h = 1/(4 mu^2) and beta_s = sqrt h.
+    assert found.thrust == pytest.approx(1 / (4 * mu * mu), rel=1e-5)
+    assert found.beta_s == pytest.approx(1 / (2 * mu), rel=1e-5)
+    assert theory.least_thickness(math.radians(155), INF).modes == (Mode.R,)
+
+
 @pytest.mark.parametrize("weight", WEIGHTS)
 @pytest.mark.parametrize("mu", and_long([1.0, 2.8, INF], [100.0]))
 def test_what_stands_at_a_point_of_the_map(mu: float, weight: str) -> None:

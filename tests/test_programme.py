@@ -221,6 +221,20 @@ def test_published_load_factors(name: str) -> None:
     assert factor(scene) == pytest.approx(case(name)["expected"]["value"], rel=1e-6)
 
 
+@pytest.mark.parametrize("name", ["ferris_tinloi_1", "jack_arch_load", "oppenheim_28"])
+def test_both_solvers_agree(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The interior point, taken of many joints, and the simplex."""
+    (scene,) = scenes(name)
+    assert linear.MANY > 1
+    monkeypatch.setattr(linear, "MANY", 0)
+    assert factor(scene) == pytest.approx(case(name)["expected"]["value"], rel=1e-9)
+    pressed = structure_of(scene | {"live": [{"body": [0, -1]}]})
+    monkeypatch.setattr(linear, "MANY", 10**9)
+    simplex = collapse(pressed).load_factor
+    monkeypatch.setattr(linear, "MANY", 0)
+    assert collapse(pressed).load_factor == pytest.approx(simplex, rel=1e-9)
+
+
 @pytest.mark.parametrize("name", asked("tilt_deg"))
 def test_published_tilts(name: str) -> None:
     """A body force sideways is a tilt whose tangent is the load factor."""
@@ -252,6 +266,16 @@ def test_published_least_friction(name: str) -> None:
     problem, least = structure_of(scene), case(name)["expected"]["value"]
     assert equilibrium(with_friction_everywhere(problem, least * (1 + 1e-6))).exists
     assert not equilibrium(with_friction_everywhere(problem, least * (1 - 1e-6))).exists
+
+
+@given(st.floats(1.0, 80.0), lengths, lengths)
+def test_a_smooth_block_slides_as_it_must(slope: float, width: float, height: float) -> None:
+    """Without friction it starts with sin of the slope, along it, whatever its shape."""
+    assume(height / width < 1 / math.tan(math.radians(slope)) * 0.99)
+    table = {"friction": 0.0, "blocks": [FLOOR, box("1", 0, 0, width, height)]}
+    found = least_motion(structure_of(table).tilted(math.radians(slope)))
+    want = [math.sin(math.radians(slope)), 0.0, 0.0]
+    assert found.accelerations[0] == pytest.approx(want, abs=1e-9)
 
 
 @given(st.floats(1.0, 80.0), lengths, lengths)

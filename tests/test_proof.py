@@ -8,6 +8,7 @@ import math
 import re
 import subprocess
 import sys
+import warnings
 from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
@@ -163,6 +164,25 @@ def test_walls_of_rounded_corners_are_answered(courses: int, decimals: int) -> N
     carried = found.carried
     # Half a brick overhangs at the ends of each other course: the least strength is of tipping.
     assert 0.2 < carried.strength_used < 1
+
+
+def test_a_wall_of_rounded_corners_is_drawn(tmp_path: Path) -> None:
+    file = tmp_path / "wall.json"
+    file.write_text(json.dumps(wall(6, 6, 10, 9, 0.7)))
+    done = blocksim("render", str(file), "--out", str(tmp_path / "wall.svg"))
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("degrees", [20, 90, 150])
+@pytest.mark.parametrize("eta", [0.05, 0.5])
+def test_three_voussoirs_without_bound_on_friction(degrees: float, eta: float) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        arch = Arch(half_angle=math.radians(degrees), eta=eta, voussoirs=3)
+        found = check(CircularArch.of(arch, friction=math.inf), method="limit")
+        assert found.verdict is Verdict.STANDS
+        assert found.carried.strength_used == 0
+        assert found.carried.resultants is not None
 
 
 def proof_of(problem: Problem) -> Table:

@@ -129,6 +129,13 @@ def test_a_structure_moves_and_can_be_seen(page, windows: Windows) -> None:
     assert windows.wrong("file:") == []
 
 
+def test_it_is_light_on_paper(page) -> None:
+    page.emulate_media(media="print", color_scheme="dark")
+    look = "getComputedStyle(document.body).backgroundColor"
+    assert page.evaluate(look) == "rgb(255, 255, 255)"
+    assert not page.locator(".controls").first.is_visible()
+
+
 def test_no_column_is_clipped(page) -> None:
     tables = page.locator(".wide:has(table)").all()
     assert len(tables) == 2  # of arches, and of structures

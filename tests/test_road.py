@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -356,6 +357,21 @@ def test_a_patch_comes_to_its_force_at_its_middle(
     )
     height = np.interp(xs, corners[:, 0], corners[:, 1]).mean()
     assert moment == pytest.approx((low + high) / 2 * down - height * across, abs=2e-4)
+
+
+def test_two_halves_of_a_patch_are_the_whole() -> None:
+    whole = structure_of({**ARCH, "live": [{"patch": [-0.5, 0.7], "force": [0, -1.2]}]})
+    parts = [
+        {"patch": [-0.5, 0.1], "force": [0, -0.6]},
+        {"patch": [0.1, 0.7], "force": [0, -0.6]},
+    ]
+    halves = structure_of({**ARCH, "live": parts})
+    factors = [collapse(each).load_factor for each in (whole, halves)]
+    assert factors[0] == pytest.approx(factors[1], rel=1e-9)
+    moved = (
+        replace(whole, load=1.0).applied_forces() - replace(halves, load=1.0).applied_forces()
+    )
+    assert np.abs(moved).max() < 1e-12
 
 
 def test_what_lies_uppermost_bears_it_and_supports_bear_their_own() -> None:

@@ -26,10 +26,11 @@ from blocksim import (
     equilibrium,
     structure_of,
 )
+from blocksim.blocks.regions import rings
 from blocksim.blocks.road import fill_of
 from blocksim.view import sheetlayout
 from blocksim.view.arrows import pressures_of
-from blocksim.view.drawing import outer_sides, save_figure
+from blocksim.view.drawing import save_figure
 from blocksim.view.sheet import answer_sheet, scale_for, sheet_of
 from blocksim.view.sheetfigure import SCREEN, sheet_figure
 from blocksim.view.structure import fill_outlines
@@ -262,7 +263,8 @@ def test_a_mechanism_is_drawn_as_its_blocks_move() -> None:
 def test_parts_of_a_block_are_one_body_without_seams() -> None:
     """An L of two rectangles: five of its eight sides are seen whole, one of them in part."""
     ell = [np.array(square(0, 0, 2, 1)), np.array(square(0, 1, 1, 1))]
-    sides = np.array(outer_sides(ell))
+    (rim,) = rings(ell)
+    sides = np.stack([rim, np.roll(rim, -1, axis=0)], axis=1)
     assert float(np.hypot(*(sides[:, 1] - sides[:, 0]).T).sum()) == pytest.approx(8.0)
     assert not any(np.allclose(side[:, 1], 1.0) and side[:, 0].min() < 0.9 for side in sides)
     problem = structure_of(

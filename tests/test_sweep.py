@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from running import inside as blocksim
-from sweeps import GRID, SIMULATED, design_of, rows_of, written
+from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
 
 from blocksim import (
     Arch,
@@ -29,7 +29,7 @@ from blocksim import (
 )  # fmt: skip
 from blocksim import sweep as public_sweep
 from blocksim.common import later
-from blocksim.sweeps import Case, answers, read_rows, write_csv, write_parquet
+from blocksim.sweeps import Case, answers, read_rows, run, write_csv, write_parquet
 from blocksim.sweeps import table as tables
 from blocksim.sweeps.answers import Answered, Asked, answer
 from blocksim.sweeps.shards import identities
@@ -222,6 +222,19 @@ def test_rows_of_earlier_versions_go_into_the_same_table(tmp_path: Path) -> None
     assert sum(row["pier_width_m"] != "" for row in held.values()) == 24
 
 
+def test_a_bracket_may_do_without_moving_runs(tmp_path: Path) -> None:
+    text = (
+        'half_angle_deg = 90\nmu = 0.7\nvoussoirs = 9\nmethod = ["limit", "direct"]\nconfirm = '
+    )
+    for confirm in ("true", "false"):
+        with ThreadPoolExecutor(1) as executor:
+            sweep(design_of(tmp_path, text + confirm), tmp_path, executor=executor)
+    rows = rows_of(tmp_path).values()
+    assert [row["confirmed"] for row in rows if row["asked"] == "limit"] == [None]
+    assert {row["confirmed"] for row in rows if row["asked"] == "direct"} == {True, None}
+    assert {row["mode"] for row in rows if row["asked"] == "direct"} == {"rrr"}
+
+
 def test_a_failing_case_becomes_a_row_that_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -298,6 +311,15 @@ def test_an_executor_that_breaks_is_not_ours_to_replace(tmp_path: Path) -> None:
         )
     with ThreadPoolExecutor(1) as executor:
         assert sweep(design, tmp_path, executor=executor).cases == 192
+
+
+def test_chunks_change_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, uninterrupted: Rows
+) -> None:
+    monkeypatch.setattr(run, "LARGEST_CHUNK", 7)
+    with ThreadPoolExecutor(1) as executor:
+        sweep(design_of(tmp_path, SIMULATED), tmp_path, executor=executor, in_flight=1)
+    assert rows_of(tmp_path) == uninterrupted
 
 
 def test_what_occurs_twice_is_asked_once_and_a_larger_design_reuses_rows(

@@ -119,6 +119,20 @@ def test_what_is_killed_leaves_no_process_and_loses_no_row(
     assert {name: found[name] for name in uninterrupted} == uninterrupted
 
 
+# Of `validate`, which ends by the same code, test_interrupts has it in every run.
+@pytest.mark.long
+def test_a_terminated_sweep_ends_with_one_line(tmp_path: Path) -> None:
+    asked, out = written(tmp_path, FOR_MINUTES), tmp_path / "out"
+    with started(*asked, "--workers", "1") as driver:
+        until(lambda: shards(out) > 0, driver)
+        workers = children(driver.pid)
+        driver.terminate()
+        assert driver.stderr.read() == b"blocksim: interrupted\n"
+        assert driver.wait() == 143
+    until(lambda: not any(alive(pid) for pid in workers))
+    assert rows_of(out)
+
+
 CLUSTER = """
 import sys
 from distributed import LocalCluster

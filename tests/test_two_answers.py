@@ -301,6 +301,13 @@ def test_two_groups_are_asked_by_themselves() -> None:
     assert may_start(beside(between_walls(0.3, 0.5), 1e4)).moves is False
 
 
+def test_below_the_least_thickness_it_moves() -> None:
+    problem = arch(3.0, 0.98)
+    start = may_start(problem)
+    assert start.moves
+    assert wrong(problem, start) < 1e-6
+
+
 def test_check_says_which_of_the_three() -> None:
     problems = [between_walls(lean, 0.5) for lean in (-0.6, -0.4, 0.3)]
     said = [check(each, method="limit", must_rest=True).rest for each in problems]

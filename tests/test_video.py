@@ -22,7 +22,7 @@ from running import inside
 from scipy.spatial.transform import Rotation
 from worlds import classify
 
-from blocksim import Arch, CircularArch, InputError, JointState, Recording
+from blocksim import Arch, CircularArch, InputError, JointState, Recording, load_recording
 from blocksim.engines.ground import DEPTH
 from blocksim.view.camera import painting_order
 from blocksim.view.canvas import Panel
@@ -102,6 +102,17 @@ def test_between_frames_blocks_turn_at_constant_speed_and_stay_rigid() -> None:
     np.testing.assert_allclose(sides[0], sides[1], rtol=1e-12)
 
 
+def test_turns_beyond_half_a_turn_go_the_short_way() -> None:
+    """A rotation vector that jumps from pi to -pi is hardly a motion."""
+    moved = np.zeros((2, ARCH.voussoirs, 3))
+    moved[:, 2, 2] = [math.pi - 0.01, -math.pi + 0.01]
+    stage = Stage(recording(moved, np.array([0.0, 1.0])))
+    stage.end = 1.0
+    way = [stage.at(t).corners[2, 0] - stage.at(0.0).corners[2, 0] for t in (0.5, 1.0)]
+    assert np.abs(way[1]).max() < 0.01
+    assert np.abs(way[0]).max() < 0.01
+
+
 def test_a_film_ends_when_a_falling_block_reaches_the_ground() -> None:
     """Free fall of the crown: the lowest corner of the two crown blocks has DEPTH plus its
     height above the springings to go."""
@@ -142,6 +153,17 @@ def test_films_beside_each_other_have_one_scale(view: Literal["2d", "3d"]) -> No
     )
     assert np.abs(one - other).max() == 0
     assert (np.abs(one - alone).max(axis=2) > 60).mean() > 0.01
+
+
+def test_a_film_ends_when_a_block_goes_into_a_footing() -> None:
+    times = np.linspace(0, 1, 101)
+    moved = np.zeros((101, ARCH.voussoirs, 3))
+    # The second block jumps over the left footing and moves down at speed 1.
+    moved[1:, 1, 0] = -0.17
+    moved[:, 1, 1] = -times
+    stage = Stage(recording(moved, times))
+    low = ARCH.assembly().blocks[1].vertices[:, 1].min() / 2.0
+    assert stage.end == pytest.approx(low + SUNK, abs=1e-9)
 
 
 def boxes(centres: np.ndarray, half: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -193,6 +215,20 @@ def test_bodies_that_hide_each_other_in_a_ring_are_all_painted() -> None:
     assert sorted(order) == [0, 1, 2]
 
 
+@pytest.mark.parametrize("view", ["2d", "3d"])
+def test_frames_depend_on_the_recording_alone(view: str, tmp_path: Path) -> None:
+    one = falling()
+    one.save(tmp_path / "run.npz")
+    films = [
+        Film([r], view=view, height=240) for r in (one, load_recording(tmp_path / "run.npz"))
+    ]
+    for number in (0, 40, films[0].count - 1):
+        later = films[1].frame(number)
+        assert np.array_equal(films[0].frame(number), later)
+        films[1].frame(7)
+        assert np.array_equal(films[1].frame(number), later)
+
+
 def test_slow_motion_and_length() -> None:
     """The release shows for 0.8 s, the end for 1.2 s, the motion as many times slower."""
     seconds = Stage(falling()).end * math.sqrt(2.0 / 9.81)
@@ -224,6 +260,21 @@ def test_mp4_can_be_read_back(tmp_path: Path) -> None:
     again = tmp_path / "again.mp4"
     render([falling()], again, slow=1, height=180)
     assert out.read_bytes() == again.read_bytes()
+
+
+def test_gif_can_be_read_back(tmp_path: Path) -> None:
+    out = tmp_path / "film.gif"
+    film = render([falling()], out, slow=1, height=180)
+    with Image.open(out) as picture:
+        assert picture.size == (film.width, film.height)
+        # Frames that are equal are one that stands longer.
+        total = 0
+        for number in range(picture.n_frames):
+            picture.seek(number)
+            total += picture.info["duration"]
+        assert total == pytest.approx(1000 * film.count / film.rate, abs=1)
+        last = np.asarray(picture.convert("RGB")).astype(int)
+    assert np.abs(last - film.frame(film.count - 1)[..., :3]).mean() < 4
 
 
 def test_an_interrupted_film_leaves_nothing(tmp_path: Path) -> None:

@@ -76,6 +76,19 @@ def test_of_writers_of_one_file_one_wins(tmp_path: Path) -> None:
     race(tmp_path, 10, 8)
 
 
+@pytest.mark.long
+def test_two_commands_leave_one_whole_file(tmp_path: Path) -> None:
+    words = ["map", "--out", str(tmp_path / "map.html")]
+    for _ in range(5):
+        both = [
+            subprocess.Popen([sys.executable, "-m", "blocksim", *words], stdout=-1)
+            for _ in range(2)
+        ]
+        assert [(each.communicate(), each.returncode)[1] for each in both] == [0, 0]
+        assert (tmp_path / "map.html").read_text().rstrip().endswith("</html>")
+    assert [each.name for each in tmp_path.iterdir()] == ["map.html"]
+
+
 # Names.
 
 
@@ -319,6 +332,15 @@ def test_each_kind_of_step_fails_once(kind: str, writers: Writers, tmp_path: Pat
     assert steps.count("write") == len(steps) - 5 >= 1
     last = range(len(steps) - 5, len(steps))
     fail_each(writers[kind], path, sorted({0, 1, len(steps) // 2, *last}))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_step_fails_once(kind: str, writers: Writers, tmp_path: Path) -> None:
+    path = tmp_path / f"out.{kind}"
+    steps = steps_of(writers[kind], path)
+    print(f"{kind}: {len(steps)} steps, each failed once")  # noqa: T201
+    fail_each(writers[kind], path, range(len(steps)))
 
 
 # Exit codes.

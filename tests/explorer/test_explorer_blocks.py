@@ -108,7 +108,7 @@ def as_structure(each: dict[str, Any], aside: float | None = None) -> dict[str, 
     return table
 
 
-@pytest.mark.parametrize("count", [12, pytest.param(168, marks=pytest.mark.long)])
+@pytest.mark.parametrize("count", [12, pytest.param(504, marks=pytest.mark.long)])
 def test_random_blocks_are_judged_as_by_python(one_page: Any, count: int) -> None:
     random = np.random.default_rng(40)
     given = [random_blocks(random, at) for at in range(count)]

@@ -459,6 +459,17 @@ def test_words_say_what_moves(page: playwright.Page) -> None:
         assert page.locator("#play").is_disabled() is (share > 1)
 
 
+def test_a_phone_on_its_side_shows_map_verdict_and_arch(open_page: Open) -> None:
+    page = open_page(812, 375, has_touch=True, is_mobile=True)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 812
+    for name in ("#map .frame", "#verdict", "#arch"):
+        box = page.locator(name).first.bounding_box()
+        assert box["y"] >= 0
+        assert box["y"] + box["height"] <= 375, name
+        assert box["height"] > 20
+    assert page.locator("#arch").bounding_box()["height"] > 140
+
+
 CONTRASTS = """() => {
   const canvas = document.createElement("canvas");
   const context = canvas.getContext("2d", { willReadFrequently: true });
@@ -512,6 +523,36 @@ def test_controls_and_pictures_have_names(page: playwright.Page) -> None:
     assert nameless == []
     assert page.get_attribute("html", "lang") == "en"
     assert "turns about its intrados" in page.get_attribute("#arch", "aria-label")
+
+
+@pytest.mark.parametrize(
+    "width", [320, *(pytest.param(each, marks=pytest.mark.long) for each in (375, 768)), 1280]
+)
+def test_works_at_any_width(open_page: Open, width: int, tmp_path: Path) -> None:
+    page = open_page(width, 812, has_touch=width < 800)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    target = place(page, 2.0, 0.5)
+    page.locator("#map").scroll_into_view_if_needed()
+    if width < 800:
+        page.touchscreen.tap(*target)
+    else:
+        page.mouse.click(*target)
+    settle(page)
+    assert float(page.input_value("#eta-number")) == pytest.approx(0.5, abs=0.01)
+    assert text(page, "#verdict").startswith("On the verge")
+    shot = tmp_path / "page.png"
+    page.screenshot(path=shot, full_page=True)
+    assert shot.stat().st_size > 20_000
+
+
+def test_prints_on_paper(page: playwright.Page) -> None:
+    page.emulate_media(media="print", color_scheme="dark")
+    assert (
+        page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    )
+    assert not page.locator("#alpha").is_visible()
+    assert page.locator("#arch .stone").first.is_visible()
+    assert page.pdf(format="A4").startswith(b"%PDF")
 
 
 def none_stands(count: int) -> list[tuple[float, float, int, float]]:

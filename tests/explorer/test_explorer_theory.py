@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from derivations import least_thickness_by_program
 
 from blocksim import Arch, Mode
 from blocksim.arch import limit, theory
@@ -145,6 +146,20 @@ def test_equilibrium_needs_the_share_it_says(
         shear = friction_line(angles, thrust, friction)
         reached = max(np.abs(pressure).max(), np.abs(shear).max())
         assert reached == pytest.approx(balance["share"], rel=2e-3)
+
+
+def test_share_against_limit_analysis(page: playwright.Page) -> None:
+    """Both scaled by 1 % less than the share, many voussoirs fall; by 1 % more they stand."""
+    alpha = np.array([1.0, 1.6, 2.2, 2.45, 2.55])
+    mu = np.array([0.6, 0.5, 0.95, 1.5, 2.2])
+    eta = np.array([0.2, 0.09, 0.9, 0.5, 1.2])
+    rows = np.column_stack([alpha, mu, eta])
+    found = evaluate(page, "theory.equilibrium(a, m, e, weight)", rows, "centreline")
+    for (half_angle, friction, ratio), balance in zip(rows.tolist(), found, strict=True):
+        for change, stands in ((0.99, False), (1.01, True)):
+            share = change * balance["share"]
+            built = least_thickness_by_program(half_angle, share * friction, 120)
+            assert (built is not None and built <= share * ratio) == stands
 
 
 # --- voussoirs as built --------------------------------------------------------------------

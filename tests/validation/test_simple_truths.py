@@ -267,6 +267,14 @@ def test_a_flat_arch_slides_out_of_its_springings(
     holds_both_sides(lambda share: settles(engine, assembly, critical / share))
 
 
+def test_a_slender_block_tips_whatever_its_friction(engine: str) -> None:
+    """The same with friction 8 and a slope of 5 degrees."""
+    slope = math.radians(5.0)
+    holds_both_sides(
+        lambda share: settles(engine, stack(slope, 1.0, share / math.tan(slope)), 8.0)
+    )
+
+
 PATIENCE = 8
 """The sweeps pybullet allows do not suffice for twenty blocks: 130,000, and a stack on a
 slope takes 400,000 and more. With fewer it is undecided."""
