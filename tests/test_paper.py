@@ -204,6 +204,17 @@ def test_fig_5_has_the_rotational_thrust_which_crosses_at_t() -> None:
     assert tuple(point) == pytest.approx((mark["alpha"], mark["h"]))
 
 
+@pytest.mark.parametrize(("number", "span"), [(6, (0, 2)), (7, (0, 1)), (8, (0.6, 2))])
+def test_figs_6_to_8_have_their_range_and_eta_1(number: int, span: tuple) -> None:
+    axes = drawn(number).axes[0]
+    assert axes.get_ylim() == pytest.approx(span)
+    assert set(line(axes, "asymptote")[:, 1]) == {1.0}
+    names = {text.get_text() for text in axes.texts}
+    assert names >= {name for name in "TSJB" if span[0] <= TABLE[name]["eta"] <= span[1]}
+    told = {text.get_text() for text in drawn(number).legends[0].get_texts()}
+    assert {r"$\mu=\mu_{ss}=\mu_{is}$", r"$\beta_r=\beta_s$", r"$\beta_r=0$"} <= told
+
+
 # An arch of each region off its lines: half-angle and friction.
 SAMPLES = {
     Mode.RRR: (2.0, 2.0), Mode.SRR: (math.radians(125), 0.9),

@@ -22,6 +22,7 @@ from structure_cases import case, scenes
 from sweeps import design_of, rows_of
 
 from blocksim import (
+    InputError,
     Problem,
     Verdict,
     bracket,
@@ -308,3 +309,12 @@ def test_a_folder_keeps_answers_and_processes_share_the_work(tmp_path: Path) -> 
     finer = {"accuracy": 1e-4}
     fragility(problem, records, [0.2], method="direct", folder=tmp_path, settings=finer)
     assert len(list(read_rows(tmp_path))) == 3
+
+
+def test_amplitudes_have_to_grow() -> None:
+    with pytest.raises(InputError, match="growing"):
+        fragility(
+            structure_of(scenes(NAME)[0]),
+            {"a": pulse(1.0)},
+            [0.2, 0.1],
+        )
