@@ -5,6 +5,7 @@ The one file that imports shapely.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any, cast
 
@@ -13,7 +14,7 @@ import shapely
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.outlines import is_convex, joined
+from blocksim.blocks.outlines import following, is_convex, joined
 from blocksim.blocks.touching import Faces, Index, Slack
 from blocksim.common.checks import require
 
@@ -104,10 +105,27 @@ def overlaps(
         common: Any = cast(Any, shapely).intersection(regions[one], regions[other])
         area, around = cast(Any, shapely).area(common), cast(Any, shapely).length(common)
         depth = np.divide(2 * area, around, out=np.zeros_like(area), where=around > 0)
-        deep = np.flatnonzero(depth > close)
+        # Of sides that all but coincide GEOS may say that they have a whole polygon in common.
+        deep = [
+            k
+            for k in np.flatnonzero(depth > close).tolist()
+            if _into(each_one[int(one[k])], each_one[int(other[k])]) > close[k]
+        ]
         found += [(int(owner[one[k]]), int(owner[other[k]]), float(depth[k])) for k in deep]
         begin, step = begin + step, min(4 * step, LONGEST_LOOK)
     return sorted(found)[:most]
+
+
+def _into(one: Array, other: Array) -> float:
+    """Return how deep convex polygons are in each other, along the normal where it is least."""
+    apart = -math.inf
+    for each, beside in ((one, other), (other, one)):
+        side = following(each) - each
+        long = np.hypot(*side.T)
+        out = np.stack([side[:, 1], -side[:, 0]], axis=1)[long > 0] / long[long > 0, None]
+        beyond = ((beside[:, None] - each[long > 0]) * out).sum(axis=2)
+        apart = max(apart, float(beyond.min(axis=0).max()))
+    return -apart
 
 
 def near_faces(faces: Faces, fixed: NDArray[np.bool_], slack: Slack) -> NDArray[np.int64]:
