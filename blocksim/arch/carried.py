@@ -93,6 +93,8 @@ def joint_forces(arch: Arch, thrust: float, share: float = 1.0) -> Array:
     weight = arch.centroid_factor * (1 - np.cos(size))
     room = normal * share * arch.eta / 2
     crown = (float((normal - weight - room).max()) + float((normal - weight + room).min())) / 2
-    outward = (crown - normal + weight) / (normal * arch.eta)
+    # A crown that nothing presses has its force nowhere.
+    turn, width = crown - normal + weight, normal * arch.eta
+    outward = np.divide(turn, width, out=np.zeros_like(turn), where=width != 0)
     ends = np.column_stack([0.5 - outward, 0.5 + outward])
     return ends[:, :, None] * np.column_stack([normal, shear])[:, None, :]
