@@ -190,9 +190,11 @@ def test_kinds_are_listed() -> None:
     listed = blocksim("kinds").stdout
     assert all(name in listed for name in KINDS)
     rows = blocksim("kinds", "portal").stdout.splitlines()
-    width = next(row for row in rows if row.startswith("pier_width"))
+    at, width = next(each for each in enumerate(rows) if each[1].startswith("pier_width"))
     assert "0.6" in width
-    assert "1e-06 to 1e+06 m" in width
+    # Of 80 characters, the unit stands below.
+    assert "1e-06 to 1e+06" in width
+    assert rows[at + 1].split()[0] == "m"
     assert width.count("pier_width") == 2, "it may be bracketed over"
     courses = next(row for row in rows if row.startswith("pier_courses"))
     assert courses.count("pier_courses") == 1
