@@ -42,7 +42,8 @@ PLANE_ONLY = {
     "shaking": "the ground is at rest",
     "velocities": "blocks begin at rest",
     "strength": "blocks are rigid",
-    **dict.fromkeys(("road", "dispersal", "soil"), "there is no road"),
+    **dict.fromkeys(("road", "dispersal"), "there is no road"),
+    "soil": "no soil bears",
 }
 """What a problem in space must not have, and what holds instead."""
 

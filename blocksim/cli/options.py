@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Generator, Mapping
 from contextlib import contextmanager
 from dataclasses import fields
+from pathlib import PurePath
 
 from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES
@@ -91,7 +92,8 @@ def refuse(
     """Refuse options that are given and mean nothing here, in space by default."""
     for name, value in options.items():
         unset = value is None or value is False or name in known
-        require(unset, option_of(name), value, why)
+        shown = str(value) if isinstance(value, PurePath) else value
+        require(unset, option_of(name), shown, why)
 
 
 def parameters_of(given: list[str] | None) -> dict[str, object]:

@@ -27,7 +27,8 @@ def extruded(problem: Problem) -> Problem[SpatialAssembly]:
     Raises
     ------
     InputError
-        If the ground shakes, or blocks or supports move: that is of the plane.
+        If it has what is of the plane: ground that shakes, supports or blocks that move, blocks
+        that crush, or soil that bears.
 
     Examples
     --------
@@ -38,6 +39,8 @@ def extruded(problem: Problem) -> Problem[SpatialAssembly]:
     """
     assembly = problem.assembly
     x, y, out = problem.gravity.tolist()
+    # What soil weighs, and presses by, are loads already.
+    bears = problem.soil is not None and any(problem.soil.passive)
     return Problem(
         assembly=prisms(assembly),
         mu=problem.mu,
@@ -48,6 +51,9 @@ def extruded(problem: Problem) -> Problem[SpatialAssembly]:
         load=problem.load,
         title=problem.title,
         source=problem.source,
+        moves=problem.moves,
+        strength=problem.strength,
+        soil=problem.soil if bears else None,
         shaking=problem.shaking,
         velocities=problem.velocities,
         weighed=problem.weighed,
