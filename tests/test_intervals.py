@@ -123,6 +123,25 @@ def test_both_ends_are_told_in_words(tmp_path: Path) -> None:
     assert "and from 27.4684885 deg (stands at 27." in words
 
 
+@pytest.mark.parametrize(
+    ("centre", "said"),
+    [(-0.5, "LOAD: falls at all values"), (0.5, "LOAD: stands at all values")],
+)
+def test_where_nothing_changes_it_is_told_what_holds(
+    centre: float, said: str, tmp_path: Path
+) -> None:
+    """A block whose centre is beside its support, or over it; the load changes nothing."""
+    table = seesaw(0.32, 0.64)
+    for corner, x in zip(table["blocks"][1]["vertices"], (-6, 6, 6, -6), strict=True):
+        corner[0] = centre + x
+    # Straight down, through the centre of the block.
+    table["live"] = [{"block": "block", "point": [centre, 1], "force": [0, -1]}]
+    path = tmp_path / "a.json"
+    path.write_text(json.dumps(table))
+    told = blocksim("bracket", str(path), "--over", "load").stdout
+    assert told.startswith(said)
+
+
 def test_what_leans_stands_between_two_tilts(tmp_path: Path) -> None:
     """A column whose base is 1 m wide and whose centre, 5 m up, is 1 m to the left of it."""
     table = {

@@ -143,6 +143,10 @@ def _beyond(method: Method, problem: Problem[Any] | None) -> str:
             return ""
         able = ", ".join(each.name for each in _shipped() if each.build_in_space)
         return f"one of limit, {able}: {method.name} knows no blocks in space"
+    if problem.strength is not None and method.name != "limit":
+        return f"limit, or no strength: blocks of {method.name} do not crush"
+    if bears(problem) and method.name != "limit":
+        return f"limit, or no --fill-passive: soil in {method.name} gives way to nothing"
     if not problem.is_planar and not method.is_spatial:
         able = " or ".join(each.name for each in _shipped() if each.is_spatial)
         return f"{able} where gravity leans out of the plane"
@@ -150,10 +154,6 @@ def _beyond(method: Method, problem: Problem[Any] | None) -> str:
         able = ", ".join(each.name for each in _shipped() if each.shakes)
         what = "ground that shakes" if problem.shaking else "blocks that begin in motion"
         return f"one of {able}: {method.name} knows no {what}"
-    if problem.strength is not None and method.name != "limit":
-        return f"limit, or no strength: blocks of {method.name} do not crush"
-    if bears(problem) and method.name != "limit":
-        return f"limit, or no --fill-passive: soil in {method.name} gives way to nothing"
     offered = offers_of(problem) if method.name == "theory" else None
     if method.name == "theory" and (offered is None or "theory" not in offered.methods):
         return "limit or an engine: theory is of symmetric circular arches only"

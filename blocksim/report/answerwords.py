@@ -151,6 +151,8 @@ def ends_proved_words(answer: Bracket[Any]) -> str:
         return NONE_IN_SPACE
     if answer.problem.strength is not None:
         return UNPROVED
+    if not answer.changes:
+        return "none: there is no change to prove"
     if not answer.proved:
         return "no proof was found for both sides of each change"
     return (
@@ -159,9 +161,11 @@ def ends_proved_words(answer: Bracket[Any]) -> str:
 
 
 def values_tried(answer: Bracket[Any]) -> str:
-    """Say the two values tried."""
+    """Say the two values tried; where there is no change, what holds at all values."""
     if answer.low is None and answer.high is None:
-        return f"NO LIMIT: {answer.over} may be anything"
+        words = {0: "falls at all values", 1: "stands at all values"}
+        known = None if answer.intervals is None else len(answer.intervals)
+        return f"{answer.over.upper()}: {words.get(known, 'no value tried was decided')}"
     unit = f" {answer.unit}" if answer.unit else ""
     ends = (("low", answer.low), ("high", answer.high))
     if answer.low is not None and answer.low == answer.high:
