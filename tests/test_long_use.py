@@ -29,11 +29,12 @@ def used():
 
 rows = []
 for number in range(count):
-    # No two are the same, so that nothing is known already; some fall.
-    eta = (0.2 if number % 2 else 0.07) * (1 + 1e-6 * number)
-    arch = Arch(half_angle=1.5, eta=eta, voussoirs=7)
+    # No two are the same, so that nothing is known already; nine in ten fall: sooner seen.
+    stands = number % 10 == 9
+    eta = (0.2 if stands else 0.07) * (1 + 1e-6 * number)
+    arch = Arch(half_angle=1.5, eta=eta, voussoirs=4)
     found = check(CircularArch.of(arch, friction=0.7), method=method)
-    assert found.verdict.value == ("stands" if number % 2 else "collapses"), found.reason
+    assert found.verdict.value == ("stands" if stands else "collapses"), found.reason
     if number % max(1, count // 10) == count // 10 - 1:
         rows.append(used())
 print(json.dumps(rows))

@@ -143,7 +143,7 @@ def film(out: Path, shown: Sequence[Recording[Any]], at: float | None, **options
     length = made.count / made.rate
     pace = f"{made.slow:g} times slower" if made.slow != 1 else "in real time"
     rest = f"{length - made.seconds * made.slow:.1g} s"
-    ends = f"{rest} of stills; blocks still move as it ends, at {made.speed:.2g} m/s"
+    ends = f"{rest} of stills; blocks still move as it ends, at {made.speed:.3g} m/s"
     shows = (
         f"{made.seconds:.3g} s of motion{radius}, {pace}, and "
         f"{ends if made.speed else f'{rest} at rest'}{why}"

@@ -100,8 +100,15 @@ def show(table: Table) -> None:
     with plain.capture() as captured:
         plain.print(table)
     shown = captured.get().splitlines()
-    for line, words in zip(shown, ["", *below] if below else [""] * len(shown), strict=True):
-        click.echo("\n".join(each for each in (line.rstrip(), words) if each))
+    # A row that is folded goes on below the word it begins with; so do the headings.
+    first = table.columns[0]
+    wide = max(len(str(each)) for each in (first.header, *first.cells))
+    begins = [at for at, line in enumerate(shown) if line[:wide].strip()]
+    ends = dict(zip([at - 1 for at in begins[2:]] + [len(shown) - 1], below, strict=False))
+    for at, line in enumerate(shown):
+        click.echo(line.rstrip())
+        if ends.get(at):
+            click.echo(ends[at])
 
 
 def _below(table: Table, width: int) -> list[str]:
