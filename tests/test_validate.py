@@ -18,11 +18,13 @@ from running import inside as blocksim
 from test_scenario import ARCHES, LEANING
 
 from blocksim import CircularArch, Mode, Verdict, load_recording, load_structure
+from blocksim.cli.studies import structure_table, validation_table
+from blocksim.cli.terminal import show
 from blocksim.common.files import json_text
 from blocksim.kinds.loading import Known, load_known
 from blocksim.report.tables import write_results
 from blocksim.studies.agreement import disagreements
-from blocksim.studies.validate import unasked, validate, validate_one
+from blocksim.studies.validate import parted, unasked, validate, validate_one
 from blocksim.sweeps import load_design
 
 
@@ -208,3 +210,25 @@ def test_scenarios_and_doctor_list_figures() -> None:
     said = blocksim("doctor").stdout
     assert re.search(r"blocksim \S+, Python 3\.\d+", said)
     assert re.search(r"numpy \d", said)
+
+
+def test_answers_stand_below_the_row_they_are_of(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also below rows that fold, where no window says how wide it is."""
+    monkeypatch.delenv("COLUMNS", raising=False)
+    names = ("fig22_first_sliding_149", "semicircle", "tower_offset", "column_six_drums")
+    chosen = [load_known(name) for name in names]
+    arches, built = parted(validate(chosen, ("pymunk",), workers=1))
+    assert {row.method for row in built} >= {"limit", "pymunk"}
+    for table, begins, names_of in (
+        (validation_table(arches), "    pymunk: ", ("22_first", "semicircle ")),
+        (structure_table(built), "    limit: ", ("tower_offset", "column_six")),
+    ):
+        show(table)
+        lines = capsys.readouterr().out.splitlines()
+        assert max(map(len, lines)) <= 80
+        at = [k for k, line in enumerate(lines) if line.startswith(begins)]
+        rows = [next(k for k, line in enumerate(lines) if name in line) for name in names_of]
+        assert len(at) == len(rows) == 2
+        assert rows[0] < at[0] < rows[1] < at[1]

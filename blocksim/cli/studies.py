@@ -118,16 +118,19 @@ def validation_lines(rows: list[Validation]) -> list[str]:
 
 
 def structure_table(rows: list[StructureRow]) -> Table:
-    """Lay out rows on structures for a terminal: a line an answer."""
-    headings = ("structure", "over", "known", "published", "method", "answer", "")
-    table = Table(*headings, right={"known", "published"}, wrap=False, below=3)
+    """Lay out rows on structures for a terminal: a line a question, a column a method."""
+    methods = list(dict.fromkeys(row.method for row in rows))
+    headings = ("structure", "over", "known", "published", *methods)
+    table = Table(*headings, right={"known", "published"}, wrap=False, below=len(methods))
+    asked: dict[tuple[str, ...], dict[str, str]] = {}
     for row in rows:
         wanted = "" if row.expected is None else f"{row.expected:.8g}"
         known = row.expected_verdict.value if row.expected_verdict else wanted
-        first = row.method == "limit"
-        asked = (row.structure, row.question, known, row.published or "-")
-        said = (row.method, found_of(row), "!" if row.miss else "")
-        table.add_row(*(asked if first else ("", "", "", "")), *said)
+        question = (row.structure, row.question, known, row.published or "-")
+        answer = f"{found_of(row)}{' !' if row.miss else ''}"
+        asked.setdefault(question, {})[row.method] = answer
+    for question, answers in asked.items():
+        table.add_row(*question, *(answers.get(method, "") for method in methods))
     return table
 
 
