@@ -164,7 +164,7 @@ def values_tried(answer: Bracket[Any]) -> str:
     """Say the two values tried; where there is no change, what holds at all values."""
     if answer.low is None and answer.high is None:
         words = {0: "falls at all values", 1: "stands at all values"}
-        known = None if answer.intervals is None else len(answer.intervals)
+        known = -1 if answer.intervals is None else len(answer.intervals)
         return f"{answer.over.upper()}: {words.get(known, 'no value tried was decided')}"
     unit = f" {answer.unit}" if answer.unit else ""
     ends = (("low", answer.low), ("high", answer.high))
