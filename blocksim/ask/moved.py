@@ -37,8 +37,7 @@ def spread_by(problem: Problem, value: float) -> Problem:
     if exact is None:
         said.append(f"it is followed up to {path.value:.6g} m")
     elif math.isfinite(left):
-        more = f"it falls at {exact:.6g} m" if left >= 0 else f"it fell at {exact:.6g} m"
-        said.append(more)
+        said.append(f"it {'falls' if left >= 0 else 'fell'} at {exact:.6g} m")
     lies = spreading.at(value)
     note = f"supports moved by {value:g} m: {'; '.join(said)}"
     return replace(lies, moves=(), notes=(*lies.notes, note))

@@ -21,7 +21,7 @@ from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Move, Problem
 from blocksim.blocks.rows import column
 from blocksim.blocks.shaking import shaking_of, shaking_record
-from blocksim.common.checks import require
+from blocksim.common.checks import endless_text, require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.tables import as_said
 
@@ -169,11 +169,6 @@ def _has_weight(body: Body) -> bool:
     return body.fixed or body.weight is not None
 
 
-def _friction_text(value: float) -> float | str:
-    """Return a number that JSON can write."""
-    return "inf" if math.isinf(value) else value
-
-
 def _load_record(load: Load, names: Sequence[str]) -> list[dict[str, Any]]:
     blocks = [names[index] for index in load.blocks]
     if load.per_weight:
@@ -206,7 +201,7 @@ def structure_record(problem: Problem) -> dict[str, Any]:
     return {
         "title": problem.title,
         "source": problem.source,
-        "friction": _friction_text(problem.mu),
+        "friction": endless_text(problem.mu),
         "size": assembly.size,
         "load": problem.load,
         "blocks": [
@@ -285,5 +280,5 @@ def _joint_record(joint: Joint, names: Sequence[str], ground: str) -> dict[str, 
     if joint.faces is not None:
         entry["faces"] = joint.faces.tolist()
     if joint.friction is not None:
-        entry["friction"] = _friction_text(joint.friction)
+        entry["friction"] = endless_text(joint.friction)
     return entry

@@ -12,12 +12,8 @@ from blocksim.cli.built import Given
 from blocksim.cli.options import named_options, refuse, require_given
 from blocksim.common.checks import is_number, require
 from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.ways import THICK
+from blocksim.kinds.ways import ASIDE, DENSITY, THICK
 
-ASIDE = 0.99
-"""Thickness where none is given, over its least: the arch collapses, in one mode."""
-DENSITY = 20_000.0
-"""Weight per volume where none is given [N/m^3]."""
 IN_METRES = " (or --span, --rise and --thickness, in m)"
 
 

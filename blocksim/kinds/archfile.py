@@ -8,7 +8,7 @@ from typing import Any, cast
 from blocksim.arch.dimensions import friction_of, require_unit_weight
 from blocksim.common.checks import FRICTION_ANGLE, LEAN_DEG, require
 from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.ways import THICK
+from blocksim.kinds.ways import ASIDE, DENSITY, THICK
 
 RENAMED = {"mu": "friction", "specific_weight": "density"}
 """Keys that have other names, besides those that ended in their unit, `_m`."""
@@ -38,12 +38,12 @@ def as_structure(data: dict[str, Any]) -> dict[str, Any]:
         require("friction" not in table, "friction_angle_deg", angle, "left out beside mu")
         table["friction"] = friction_of(angle)
     if not THICK & table.keys():
-        table["ratio"] = 0.99
+        table["ratio"] = ASIDE
     if gravity:
         LEAN_DEG.require("lean_deg", lean := gravity.get("lean_deg"))
         turn = math.radians(cast("float", lean))
         table["dead"] = [{"body": [0.0, -math.cos(turn), math.sin(turn)]}]
-    usual = {"weight": "sector" if "span" in table else "centreline", "density": 20_000.0}
+    usual = {"weight": "sector" if "span" in table else "centreline", "density": DENSITY}
     others = {name: data[name] for name in data if name not in PARTS}
     expected = [expect] if expect else []
     return {"kind": CircularArch.name, **usual, **table, **others, "expect": expected}

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any, cast
 
 from blocksim.blocks.maker import Kind
-from blocksim.common.checks import LENGTH, require
+from blocksim.common.checks import LENGTH, endless_text, require
 from blocksim.common.fields import fields_of
 from blocksim.kinds import KINDS
 
@@ -62,7 +61,7 @@ def with_friction(data: object, friction: float) -> object:
     if not isinstance(data, dict):
         return data
     table = cast("dict[str, Any]", data)
-    return {"friction": "inf" if friction == math.inf else friction, **table}
+    return {"friction": endless_text(friction), **table}
 
 
 def deepened(table: dict[str, Any], depth: float, *own: type[Kind[Any]]) -> dict[str, Any]:

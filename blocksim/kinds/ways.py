@@ -7,6 +7,10 @@ from typing import Any
 
 from blocksim.common.checks import infinite
 
+ASIDE = 0.99
+"""Thickness where none is given, over its least: the arch collapses, in one mode."""
+DENSITY = 20_000.0
+"""Weight per volume where none is given [N/m^3]."""
 SPRINGINGS = "left_deg", "right_deg"
 THICK = {"thickness", "eta", "ratio"}
 LINE = {"span", "rise", "at"}
