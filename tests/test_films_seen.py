@@ -191,10 +191,10 @@ def joints_seen(
 
 def drawn_marks(film: Film, number: int) -> NDArray[np.float64]:
     """Points along all marks of joints in a frame: column, row, and how far they reach."""
-    seconds = film._within((number / film.rate - 0.8) / film.slow)
+    share = film.share(film._within((number / film.rate - 0.8) / film.slow))
     (view,) = film._views
     found = [np.empty((0, 3))]
-    for shape in zoomed(view._joints(moment_of(film, number)), film.share(seconds), view.centre):
+    for shape in zoomed(view._joints(moment_of(film, number)), share, view.centre):
         start, end = shape.points, np.roll(shape.points, -1, axis=0)
         points = (start + np.linspace(0, 1, 200)[:, None, None] * (end - start)).reshape(-1, 2)
         points[:, 1] = film.height - points[:, 1]
