@@ -23,7 +23,9 @@ from blocksim import (
     CircularArch,
     Column,
     JointState,
+    Verdict,
     bracket,
+    check,
     equilibrium,
     load_recording,
     structure_of,
@@ -516,3 +518,23 @@ def test_a_portal_under_fill_thrusts_as_a_half_does() -> None:
     assert told["thrust_max_kN"] == pytest.approx(greatest, rel=1e-6)
     for each in told["reactions"]:
         assert each["vertical_kN"] == pytest.approx(sum(part for part, _ in parts), rel=1e-9)
+
+
+def test_what_fell_stands_nowhere_beyond() -> None:
+    """A flat arch straightens until its three hinges are in line: then nothing holds it."""
+    flat = structure_of({"kind": "flat-arch", "friction": 0.8})
+    left, crown, right = (flat.assembly.joints[at] for at in (0, 4, 9))
+    a, b, c = left.inner, crown.outer, right.inner
+    falls = math.dist(a, b) + math.dist(b, c) - math.dist(a, c)
+    assert bracket(flat, over="spread", method="limit").limit == pytest.approx(falls, rel=1e-6)
+    for share in (0.9, 0.9999):
+        assert check(spread_by(flat, share * falls)).verdict is Verdict.STANDS
+    for share in (1.0001, 1.001, 1.3, 2.0):
+        answer = check(spread_by(flat, share * falls))
+        assert answer.verdict is Verdict.COLLAPSES
+        assert answer.proved
+
+
+def test_an_answer_on_supports_that_moved_says_what_acted_then() -> None:
+    done = inside("bracket", "flat-arch", "--mu", "0.8", "--spread", "0.01", "--over", "tilt")
+    assert "supports moved by 0.01 m, before any push and under all else" in done.stdout
