@@ -80,9 +80,9 @@ def check(
     if not problem.is_moving:
         answer = _with_rest(answer, found, given.progress, must_rest=must_rest)
     answer = replace(answer, wall_s=time.perf_counter() - started)
-    if found.static is not None:
-        # Asked for already.
-        vars(answer)["static"] = found.static
+    # Asked for already.
+    known = {"static": found.static, "offers": found.offers}
+    vars(answer).update({name: each for name, each in known.items() if each is not None})
     return _as_proved(answer)
 
 
@@ -114,12 +114,13 @@ def _as_proved(answer: Check[Any]) -> Check[Any]:
 
 
 class _Found(NamedTuple):
-    """An answer, and what tells of rest: forces of equilibrium, a motion that was seen."""
+    """An answer, what tells of rest (forces, a motion that was seen), and what is known."""
 
     answer: Check[Any]
     exists: bool | None
     moved: bool
     static: Equilibrium | SpatialEquilibrium | None = None
+    offers: Offers | None = None
 
 
 def _offered(problem: Problem, offered: Offers, chosen: Method, given: Taken) -> _Found:
@@ -134,7 +135,7 @@ def _offered(problem: Problem, offered: Offers, chosen: Method, given: Taken) ->
             joints=static.joints,
             arch=offered.facts(mode=static.mode),
         )
-        return _Found(answer, offered.stands, moved=False)
+        return _Found(answer, offered.stands, moved=False, offers=offered)
     answer, seen = _simulated(problem, offered, chosen, given)
     facts = offered.facts(
         mode=offered.mode(seen.joints), mode_in_motion=offered.mode(seen.joints_in_motion)
