@@ -133,9 +133,12 @@ def test_a_three_hinged_arch_of_two_blocks_falls_when_it_is_flat(steps: int | No
     assert path.value == pytest.approx(flat, rel=1e-8)
 
 
-SPREADING = ((7, 0.35), (8, 0.35), (17, 0.15), (31, 0.25))
+SPREADING = (
+    *((7, 0.35), (8, 0.35), (9, 0.2), (11, 0.4), (13, 0.25), (15, 0.4)),
+    *((17, 0.15), (19, 0.3), (21, 0.2), (25, 0.35), (27, 0.15), (31, 0.25)),
+)
 """Voussoirs and thickness of semicircles."""
-SHARES = (0.5, 0.51, 1.0)
+SHARES = (0.5, 0.51, 0.0, 1.0, 0.25)
 """Of the motion, that the left support does."""
 Hinges = tuple[int, int, int]
 
