@@ -13,7 +13,7 @@ from blocksim.blocks.joints import ObservedJoint
 from blocksim.blocks.problem import Problem
 from blocksim.common.shown import Shown
 from blocksim.kinds.offers import Offers, carried_of, offers_of
-from blocksim.limit import Equilibrium, equilibrium
+from blocksim.limit import Equilibrium, Resultants, equilibrium
 from blocksim.limit.carried import Carried
 from blocksim.limit.crushing import Needed
 from blocksim.limit.exact import Exact
@@ -167,6 +167,12 @@ class Check(Shown, Generic[Blocks]):
         normals and across, (joints, 3) [N]. None where there are none.
         """
         return None if self.static is None else self.static.forces
+
+    @property
+    def resultants(self) -> Resultants | None:
+        """What each joint carries, in the plane in the safest state; None where it falls."""
+        held: Any = self.static if self.problem.in_space else self.carried
+        return None if held is None else held.resultants
 
     @cached_property
     def mechanism(self) -> Array | None:
