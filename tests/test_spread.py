@@ -442,7 +442,7 @@ ARCH = CircularArch(span=8.0, rise=3.0, thickness=0.6, voussoirs=14, friction=0.
 
 def test_an_arch_that_is_spread_has_its_least_thrust() -> None:
     """Hinges at crown and haunches: moments of one half, turned as far as its way."""
-    problem = ARCH.between_supports().problem()
+    problem = ARCH.but(on_supports=True).problem()
     spread = 0.02
     lies = spread_by(problem, spread)
     points = thrusts_over(problem, 8)
