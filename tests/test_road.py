@@ -387,7 +387,7 @@ def test_what_lies_uppermost_bears_it_and_supports_bear_their_own() -> None:
     assert borne == pytest.approx([-1.5, -0.5])
 
 
-AXLE = "--point-load", "-1.35", "60"
+AXLE = "--point-load", "-1.35", "20"
 
 
 @pytest.mark.parametrize("more", [("--fill", "0.5"), ("--fill", "0.5", *AXLE), AXLE])
@@ -401,3 +401,26 @@ def test_the_line_that_was_measured_stays_under_a_road(more: tuple[str, ...]) ->
         for share in (0.9999, 1.0001)
     ]
     assert codes == [1, 0]
+
+
+@pytest.mark.parametrize(
+    "turn",
+    [("check", "--tilt", "10"), ("check", "--lean", "10"), ("bracket", "--over", "tilt")],
+    ids=" ".join,
+)
+@pytest.mark.parametrize("more", [("--fill", "0.5"), AXLE], ids=" ".join)
+def test_what_bears_a_road_stands_upright(turn: tuple[str, ...], more: tuple[str, ...]) -> None:
+    """Weights on a road are forces: they would keep their direction while gravity turns."""
+    line = "--span", "8", "--rise", "2.5", "--thickness", "0.5", "--mu", "0.7", *more
+    done = inside(turn[0], *line, *turn[1:])
+    assert done.returncode == 2
+    assert "must be left out under fill or loads on a road" in done.stderr
+    assert inside("check", *line, "--method", "limit").returncode == 0
+
+
+def test_what_has_no_mass_is_said_to_be_neither_pushed_nor_shaken() -> None:
+    line = "check", "--span", "8", "--rise", "2.5", "--thickness", "0.5", "--mu", "0.7"
+    push = *line, "--push", "0.1"
+    words = "fill and loads on the road are not pushed"
+    assert words in inside(*push, "--fill", "0.5").stdout
+    assert words not in inside(*push).stdout

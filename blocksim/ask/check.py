@@ -15,6 +15,7 @@ from blocksim.ask.undecided import closing_of_verdict, undecided_words
 from blocksim.blocks.assembly import Blocks
 from blocksim.blocks.joints import closed_joints
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.road import bears_road
 from blocksim.common.progress import Progress
 from blocksim.engines import get_engine
 from blocksim.kinds.offers import Offers, offers_of
@@ -76,6 +77,8 @@ def check(
     answer = found.answer
     words = aside("method", chosen_words(given.method, chosen))
     notes = tuple(Evidence("note", note) for note in answer.problem.notes)
+    if problem.shaking is not None and bears_road(problem):
+        notes += (Evidence("note", "fill and loads on the road have no mass that would shake"),)
     answer = replace(answer, evidence=(*answer.evidence, *words, *notes))
     if not problem.is_moving:
         answer = _with_rest(answer, found, given.progress, must_rest=must_rest)

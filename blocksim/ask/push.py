@@ -9,6 +9,7 @@ import numpy as np
 
 from blocksim.blocks.acting import Load
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.road import bears_road
 from blocksim.common.checks import PUSH, require
 from blocksim.limit.capacity import collapse
 from blocksim.limit.displaced import Displaced
@@ -83,6 +84,11 @@ def borne_words(both: Mapping[str, float]) -> str:
     return f"it bears {said}"
 
 
+def without_mass(problem: Problem) -> str:
+    """Say what lies on it and is not pushed."""
+    return "; fill and loads on the road are not pushed" if bears_road(problem) else ""
+
+
 def pushed(problem: Problem, share: float) -> Problem:
     """Return a problem that is pushed sideways by a share of the weight of each block.
 
@@ -94,7 +100,7 @@ def pushed(problem: Problem, share: float) -> Problem:
     PUSH.require("push", share)
     both = borne(problem)
     worst = worse(both)
-    note = f"pushed by {share:g} g to the {worst}: {borne_words(both)}"
+    note = f"pushed by {share:g} g to the {worst}: {borne_words(both)}{without_mass(problem)}"
     dead = (*problem.dead, across(problem, WAYS[worst] * share))
     return replace(problem, dead=dead, notes=(*problem.notes, note))
 

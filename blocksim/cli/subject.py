@@ -60,10 +60,10 @@ def anything_asked(
     """
     if scene is None:
         found = arch_asked(given, thick=thick, sought=sought, **needed)
-        if loading.given:
+        if loading.given or given.lean is not None:
             from blocksim.cli.road import loaded
 
-            found = loaded(found, Given(), loading)
+            found = loaded(found, Given(lean=given.lean), loading)
     else:
         # An arch by its options is answered sooner than readers of files are loaded.
         from blocksim.cli.structures import structure
