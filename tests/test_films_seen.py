@@ -17,7 +17,7 @@ from running import inside
 
 import blocksim
 from blocksim import JointState, Recording
-from blocksim.ask.push import across
+from blocksim.blocks.acting import push_on_all
 from blocksim.view.canvas import colour
 from blocksim.view.drawing import words_of
 from blocksim.view.film import Film
@@ -243,7 +243,7 @@ def test_a_push_is_one_arrow_in_a_corner_with_its_share_of_the_weight() -> None:
     """On Oppenheim's arch 0.45 to the right, live; dead and to the left on a wall."""
     arch = replace(blocksim.load("oppenheim_7"), load=0.45)
     wall = blocksim.load("wall", friction=0.7)
-    wall = replace(wall, dead=(across(wall, -0.25),))
+    wall = replace(wall, dead=(push_on_all(wall, [-0.25, 0.0]),))
     for problem, words, tone, way in (
         (arch, "push 0.45 g", LIVE, 1), (wall, "push 0.25 g", DEAD, -1),
     ):  # fmt: skip
