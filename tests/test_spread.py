@@ -268,7 +268,13 @@ def test_a_support_that_turns_takes_the_branch_that_rests() -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("arch", "share"), [((7, 0.35), 0.3), ((11, 0.4), 0.5)])
+@pytest.mark.parametrize(
+    ("arch", "share"),
+    [
+        *(((7, 0.35), 0.3), ((9, 0.2), 0.5), ((11, 0.4), 0.5), ((17, 0.15), 1.0)),
+        *(((21, 0.2), 0.5), ((27, 0.15), 0.0), ((31, 0.25), 0.51)),
+    ],
+)
 def test_direct_brackets_the_stable_branch(arch: tuple[int, float], share: float) -> None:
     (want,) = first_fall(*arch)
     found = bracket(shared(*arch, share).asked, over="spread", method="direct")
