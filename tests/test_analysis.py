@@ -363,6 +363,14 @@ def test_one_arch_falls_alike_side_by_side(tmp_path: Path) -> None:
     assert (tmp_path / "engines.png").stat().st_size > 0
 
 
+def test_engines_are_filmed_where_they_are_wrong(tmp_path: Path) -> None:
+    found = study("referee_films").main(tmp_path, quick=True)
+    page = (STUDIES.parent / "docs" / "guide" / "suite.md").read_text("utf-8")
+    assert all((each["bounds_moved"] > 1) == (each["truth"] == "stands") for each in found)
+    assert [each["film"] for each in found if f"figures/{each['film']}" not in page] == []
+    assert (tmp_path / found[0]["film"]).with_suffix(".png").stat().st_size > 0
+
+
 def test_referee_makes_its_table_of_the_rows_that_are_kept(tmp_path: Path) -> None:
     study("referee").main(tmp_path, quick=True)
     kept = STUDIES.parent / "scenarios" / "suite" / "known.json"
