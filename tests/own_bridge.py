@@ -14,6 +14,12 @@ import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import linprog
 
+RATIO = 1.05
+TANGENTS: Any = RATIO ** -np.arange(200.0)
+"""Shares of the strength at which tangents touch."""
+SPARED = 4 * RATIO / (1 + RATIO) ** 2
+"""Tangents lie above the law of this share of the strength."""
+
 
 @dataclass
 class Bridge:
@@ -108,17 +114,48 @@ class Bridge:
                     parts.append(column.ravel())
         return np.array(parts).T
 
-    def factor(self, live: np.ndarray, dead: np.ndarray | None = None, **more: Any) -> float:
-        """The largest factor on live loads, by scipy."""
+    def factor(
+        self,
+        live: np.ndarray,
+        dead: np.ndarray | None = None,
+        *,
+        soil: np.ndarray | None = None,
+        strength: float | None = None,
+    ) -> float:
+        """The largest factor on live loads, by scipy.
+
+        `soil`, (voussoirs, 3): What soil bears at each, of which any share may act.
+        `strength`: [kPa]
+        """
         if not hasattr(self, "_balance"):
             self._balance, self._dead = self.columns(), self.dead()
         dead = self._dead if dead is None else dead
-        matrix = np.hstack([self._balance, live.reshape(-1, 1)])
+        count = 3 * self.count
+        more = np.zeros((0, count))
+        if soil is not None:
+            more = (np.eye(self.count)[..., None] * soil).reshape(-1, count)
+        columns = [self._balance, more.T, live.reshape(-1, 1)]
+        matrix = np.hstack(columns)
         cost = np.zeros(matrix.shape[1])
         cost[-1] = -1.0
-        found = linprog(cost, A_eq=matrix, b_eq=-dead.ravel(), bounds=(0, None), **more)
+        bounds = [(0, None)] * self._balance.shape[1] + [(0, 1)] * len(more) + [(0, None)]
+        law = {} if strength is None else self._tangents(strength, matrix.shape[1])
+        found = linprog(cost, A_eq=matrix, b_eq=-dead.ravel(), bounds=bounds, **law)
         assert found.status in {0, 3}
         return -found.fun if found.status == 0 else math.inf
+
+    def _tangents(self, strength: float, count: int) -> dict[str, Any]:
+        """Rows that a strength adds: tangents of n^2 / (2 P) at both ends, which lie below."""
+        full = strength * self.thick
+        rows: list[Any] = []
+        for joint in range(self.count + 1):
+            for end in (0, 1):
+                row = np.zeros((TANGENTS.size, count))
+                row[:, 4 * joint : 4 * joint + 4] = TANGENTS[:, None]
+                row[:, 4 * joint + 2 * end : 4 * joint + 2 * end + 2] -= 1
+                rows.append(row / TANGENTS[:, None])
+        right = np.tile(TANGENTS * full / 2, len(rows))
+        return {"A_ub": np.concatenate(rows), "b_ub": right}
 
     def options(self) -> list[str]:
         """The same bridge on the command line."""

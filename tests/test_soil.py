@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from own_bridge import Bridge
+from own_bridge import SPARED, Bridge
 from running import inside
 from scipy.integrate import quad
-from scipy.optimize import linprog
 from test_crossing import is_as_bad_as_said
 
 from blocksim import CircularArch
@@ -72,23 +71,32 @@ def test_fill_bears_what_the_arch_moves_into(
     least = across(BRIDGE, pressure, pressure)
     most = [share * PASSIVE for share in shares]
     more = across(BRIDGE, *(each - pressure if each else 0.0 for each in most))
-    columns = np.array([np.eye(BRIDGE.count)[k][:, None] * more for k in range(BRIDGE.count)])
-    balance = BRIDGE.columns()
-    matrix = np.hstack(
-        [balance, columns.reshape(BRIDGE.count, -1).T, LIVE.reshape(-1, 1)],
-    )
-    cost = np.zeros(matrix.shape[1])
-    cost[-1] = -1.0
-    bounds = [(0, None)] * balance.shape[1] + [(0, 1)] * BRIDGE.count + [(0, None)]
     dead = BRIDGE.dead() + least
-    own: Any = linprog(cost, A_eq=matrix, b_eq=-dead.ravel(), bounds=bounds)
+    own = BRIDGE.factor(LIVE, dead, soil=more)
     asked = ["--fill-passive", ",".join(map(str, shares)), "--fill-friction-angle", str(ANGLE)]
     if pressure:
         asked += ["--fill-pressure", "active"]
     found = limit(*asked)
-    assert found == pytest.approx(-own.fun, rel=1e-7)
+    assert found == pytest.approx(own, rel=1e-7)
     # A wheel on the right pushes the arch into the soil on the left.
     assert (found > BRIDGE.factor(LIVE, dead) * (1 + 1e-6)) is (shares[0] > 0)
+
+
+@pytest.mark.parametrize("strength", [0.7, 5.0])
+def test_fill_bears_as_much_as_blocks_that_crush_need(strength: float) -> None:
+    """The same programme with tangents of the law of strength, from both sides."""
+    soil = across(BRIDGE, 0.33 * PASSIVE, 0.33 * PASSIVE)
+    most, least = (
+        BRIDGE.factor(LIVE, soil=soil, strength=1e3 * strength * share) for share in (1, SPARED)
+    )
+    asked = "--fill-passive", "0.33", "--fill-friction-angle", str(ANGLE)
+    found = limit(*asked, "--strength", str(strength))
+    assert most - least < 1e-3 * most
+    assert least - 1e-6 < found < most + 1e-6
+    assert found < limit(*asked)
+    for share, code in ((0.9999, 0), (1.0001, 1)):
+        given = *asked, "--strength", str(strength), "--load", repr(share * found)
+        assert inside("check", *BRIDGE.options(), *WHEEL, *given).returncode == code
 
 
 def test_what_fill_bears_is_told_and_proved() -> None:

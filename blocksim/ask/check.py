@@ -20,7 +20,7 @@ from blocksim.common.progress import Progress
 from blocksim.engines import get_engine
 from blocksim.kinds.offers import Offers, offers_of
 from blocksim.limit import Equilibrium, collapse, equilibrium
-from blocksim.limit.crushing import strength_needed
+from blocksim.limit.crushing import mobilised, strength_needed
 from blocksim.simulation.verdict import Evidence, Verdict, aside
 
 if TYPE_CHECKING:
@@ -150,9 +150,9 @@ def _general(problem: Problem[Any], chosen: Method, given: Taken) -> _Found:
     """Answer by limit analysis or by an engine."""
     known = problem.has_statics
     factor = collapse(problem).load_factor if known and problem.live else None
-    static = equilibrium(problem) if known else None
     # What soil bears is mobilised as far as it has to be.
-    problem = static.problem if isinstance(static, Equilibrium) else problem
+    problem = problem if problem.in_space else mobilised(problem)
+    static = equilibrium(problem) if known else None
     exists = None if static is None else static.exists
     if static is not None and chosen.is_static:
         if exists and not problem.in_space and problem.strength is not None:

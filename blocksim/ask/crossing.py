@@ -29,7 +29,7 @@ from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
 from blocksim.common.shown import Shown
 from blocksim.limit import collapse, thrust_range
-from blocksim.limit.bearing import settled
+from blocksim.limit.crushing import mobilised
 from blocksim.limit.margins import crown
 from blocksim.limit.statics import exists
 
@@ -76,7 +76,7 @@ class Crossing(Shown):
         found: list[tuple[float, float] | None] = []
         for place in self.places:
             live = loads_at(self.problem, place.live)
-            under = settled(replace(self.problem, live=live, load=1.0))
+            under = mobilised(replace(self.problem, live=live, load=1.0))
             ends = (
                 None if joint is None or place.load_factor < 1 else thrust_range(under, joint)
             )

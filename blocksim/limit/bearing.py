@@ -30,12 +30,13 @@ class Bearing:
     """What soil bears more at most, as columns of a programme.
 
     `cones`: Of the problem.
+    `columns`, (equations, loads) sparse: What all that soil bears does to the blocks.
     """
 
     def __init__(self, problem: Problem, cones: Cones) -> None:
         self._loads, self._cones = soil_bearing(problem), cones
         columns = [cones.loads(problem.assembly.of_load(load)) for load in self._loads]
-        self._columns: Any = sparse.csc_array(np.array(columns).reshape(len(columns), -1).T)
+        self.columns: Any = sparse.csc_array(np.array(columns).reshape(len(columns), -1).T)
 
     def most(
         self,
@@ -50,7 +51,7 @@ class Bearing:
         Returns `shares`, (loads,): Of what soil bears; empty where nothing balances.
         """
         cones, count = self._cones, len(self._loads)
-        columns = sparse.hstack([self._columns, column], format="csc")
+        columns = sparse.hstack([self.columns, column], format="csc")
         ends = np.append(np.zeros(count), bounds[0]), np.append(np.ones(count), bounds[1])
         found = most(cones, columns, right, ends, solver)
         if not found.exists:
@@ -61,6 +62,9 @@ class Bearing:
     def added(self, problem: Problem, shares: Array) -> Problem:
         """Return a problem on which soil presses by shares of what it bears, and no more."""
         assert problem.soil is not None  # noqa: S101 - it bears
+        if not shares.size:
+            # Nothing balances, or whatever the factor: either is so without soil.
+            shares = np.zeros(len(self._loads))
         more = tuple(
             replace(load, force=share * load.force)
             for load, share in zip(self._loads, shares.tolist(), strict=True)
@@ -100,8 +104,5 @@ def settled(problem: Problem, live: Array | None = None) -> Problem:
     else:
         column, pull = cones.loads(live)[:, None], problem.with_load(0.0).applied_forces()
         bounds = (-math.inf, math.inf)
-    found, shares = bearing.most(sparse.csc_array(column), -cones.loads(pull), bounds)
-    if not found.exists:
-        # Whatever the factor, or nothing at all: either is so without it.
-        shares = np.zeros(len(soil_bearing(problem)))
+    _, shares = bearing.most(sparse.csc_array(column), -cones.loads(pull), bounds)
     return bearing.added(problem, shares)

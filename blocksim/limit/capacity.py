@@ -17,9 +17,9 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.common.later import sparse, sparse_linalg
-from blocksim.limit.bearing import Bearing, bears, settled
+from blocksim.limit.bearing import Bearing, bears
 from blocksim.limit.cones import ROUND_OFF, Cones, most
-from blocksim.limit.crushing import Crushing
+from blocksim.limit.crushing import Crushing, mobilised
 from blocksim.limit.linear import LinearProgramme, Optimum
 from blocksim.limit.programme import most_common, scaled
 from blocksim.limit.symmetry import mirror_of
@@ -67,11 +67,11 @@ class Capacity:
         cones = self.cones
         column = sparse.csc_array(cones.loads(live)[:, None])
         right = -cones.loads(self._dead)
+        if self._crushing is not None:
+            return self._collapse(self._crushing.most(column, right)[0])
         if self._bearing is not None:
             endless = (-math.inf, math.inf)
             return self._collapse(self._bearing.most(column, right, endless, self._solver)[0])
-        if self._crushing is not None:
-            return self._collapse(self._crushing.most(column, right))
         return self._collapse(most(cones, column, right, (-math.inf, math.inf), self._solver))
 
     def gauge(self, live: Array) -> float:
@@ -165,7 +165,7 @@ def collapse(problem: Problem) -> Collapse:
         If nothing is known that a strength could be compared with.
     """
     live = problem.live_forces
-    problem = settled(problem, live)
+    problem = mobilised(problem, live)
     found, mirror = Capacity(problem).of(live), mirror_of(problem.with_load(0.0), live)
     if mirror is None:
         return found

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
@@ -19,7 +20,7 @@ from blocksim.common.checks import require
 from blocksim.common.conic import Cone, solved_cones
 from blocksim.common.errors import Unsolved
 from blocksim.common.later import sparse
-from blocksim.limit.bearing import bears
+from blocksim.limit.bearing import Bearing, bears, settled
 from blocksim.limit.cones import Cones, joint_areas
 from blocksim.limit.linear import NONE, UNBOUNDED, Optimum
 from blocksim.limit.programme import scaled
@@ -75,32 +76,40 @@ class Crushing:
         self._unit = np.repeat(cones.unit, 2)
         self._ends = ends = cones.pressing
         self._both = (ends[0::2] + ends[1::2])[np.repeat(np.arange(crushing.size), 2)]
+        bare = sparse.csc_array((cones.balance.shape[0], 0))
+        self._soil: Any = Bearing(problem, cones).columns if bears(problem) else bare
 
-    def most(self, column: Any, right: Array) -> Optimum:
+    def most(self, column: Any, right: Array) -> tuple[Optimum, Array]:
         """Make the factor on a column as large as balance, friction and strength allow.
 
-        The factor is the last of its values; the first prices are those of the balance.
-
+        Returns `found`: The factor is the last of its values; the first prices are those of
+            the balance.
+        Returns `shares`, (loads,): Of what soil bears.
         Raises `Unsolved`: If the solver gives up.
         """
         cost = np.append(np.zeros(self._cones.count), -1.0)
-        return self._solve(cost, column, right)
+        return self._solve(cost, column, right, self._soil)
 
     def extreme(self, cost: Array, right: Array) -> Optimum:
         """Find forces of equilibrium within the strength, at the least cost."""
-        return self._solve(cost, None, right)
+        return self._solve(cost, None, right, self._soil)[0]
 
-    def least(self, right: Array) -> Optimum:
+    def least(self, right: Array) -> tuple[Optimum, Array]:
         """Find the least share of the strength that balance and friction need.
 
-        The share is the last of the values.
+        Returns `found`: The share is the last of its values.
+        Returns `shares`, (loads,): Of what soil bears.
         """
         cost = np.append(np.zeros(self._cones.count), 1.0)
-        return self._solve(cost, None, right, sought=True)
+        return self._solve(cost, None, right, self._soil, sought=True)
 
     def spared(self, parts: Array, right: Array) -> Array | None:
-        """Return forces between some and those that need least strength, which need not all."""
-        found = self.least(right)
+        """Return forces between some and those that need least strength, which need not all.
+
+        Soil bears nothing more in them.
+        """
+        cost = np.append(np.zeros(self._cones.count), 1.0)
+        found, _ = self._solve(cost, None, right, self._soil[:, :0], sought=True)
         if not found.exists:
             return None
         least = found.values[:-1]
@@ -126,39 +135,41 @@ class Crushing:
         return float((force**2 / (2 * full * np.maximum(end, NOTHING**2 * force))).max())
 
     def _solve(
-        self, cost: Array, column: Any, right: Array, *, sought: bool = False
-    ) -> Optimum:
+        self, cost: Array, column: Any, right: Array, soil: Any, *, sought: bool = False
+    ) -> tuple[Optimum, Array]:
         """Find the least cost; beside the parts a factor, or a share that is sought."""
-        cones, count = self._cones, cost.size
+        cones, count, loads = self._cones, cost.size, int(soil.shape[1])
         beside = sparse.csc_array((right.size, 1)) if sought else column
-        balance: Any = cones.balance
-        if count > cones.count:
-            balance = sparse.hstack([balance, beside], format="csc")
-        presses = np.flatnonzero(cones.bounded)
-        ones = np.ones(presses.size)
-        pressing = sparse.csc_array(
-            (-ones, (np.arange(presses.size), presses)), shape=(presses.size, count)
-        )
+        columns = [cones.balance, *([beside] if count > cones.count else ()), soil]
+        balance: Any = sparse.hstack(columns, format="csc")
+        shares = np.arange(count, count + loads)
+        above = np.concatenate([np.flatnonzero(cones.bounded), shares])
+        pressing = _bounds(above, -1.0, count + loads)
         law, bound = self._law(count, sought=sought)
-        matrix = sparse.csc_matrix(sparse.vstack([balance, pressing, law]))
+        law = sparse.hstack([law, sparse.csr_array((law.shape[0], loads))])
+        matrix = sparse.csc_matrix(
+            sparse.vstack([balance, pressing, _bounds(shares, 1.0, count + loads), law])
+        )
         ends: list[Cone] = [("second-order", 3)] * self._full.size
+        cost = np.append(cost, np.zeros(loads))
         found = solved_cones(
-            sparse.csc_matrix((count, count)),
+            sparse.csc_matrix((cost.size, cost.size)),
             cost,
             matrix,
-            np.concatenate([right, np.zeros(presses.size), bound]),
-            [("zero", right.size), ("nonnegative", presses.size), *ends],
+            np.concatenate([right, np.zeros(above.size), np.ones(loads), bound]),
+            [("zero", right.size), ("nonnegative", above.size + loads), *ends],
             finest=FINEST,
         )
         said, values = str(found.status), np.array(found.x)
         if "Infeasible" in said:
-            return UNBOUNDED if "Dual" in said else NONE
+            return UNBOUNDED if "Dual" in said else NONE, np.zeros(loads)
         balanced = bool(np.isfinite(values).all())
         balanced = balanced and np.abs(balance @ values - right).max() < FAITHFUL
         gap = abs(float(found.obj_val) - float(found.obj_val_dual))
         if not balanced or gap > FAITHFUL * max(1.0, abs(float(found.obj_val))):
             raise Unsolved
-        return Optimum(values=values, prices=-np.array(found.z), unbounded=False)
+        optimum = Optimum(values=values[:count], prices=-np.array(found.z), unbounded=False)
+        return optimum, np.clip(values[count:], 0.0, 1.0)
 
     def _law(self, count: int, *, sought: bool) -> tuple[Any, Array]:
         """Return rows and right sides of n^2 <= 2 P m, three of each end.
@@ -188,14 +199,42 @@ def strength_needed(problem: Problem) -> Needed | None:
     Raises `InputError`: As of `Crushing`.
     Raises `Unsolved`: If the solver gives up.
     """
+    problem = mobilised(problem)
+    cones = Cones(problem)
+    found = _least(problem, cones)
+    return None if found is None else _needed(cones, *found[:3])
+
+
+def mobilised(problem: Problem, live: Array | None = None) -> Problem:
+    """Do what `settled` does; of blocks that crush within their strength.
+
+    `live`: As of `settled`; by default the strength that is needed is made least.
+    """
+    if problem.strength is None or not bears(problem):
+        return settled(problem, live)
+    cones = Cones(problem)
+    shares = np.zeros(0)
+    if live is None:
+        found = _least(problem, cones)
+        shares = shares if found is None else found[3]
+    else:
+        crushing = Crushing(problem, cones, problem.strength)
+        dead = cones.loads(problem.with_load(0.0).applied_forces())
+        optimum, mobile = crushing.most(sparse.csc_array(cones.loads(live)[:, None]), -dead)
+        shares = mobile if optimum.exists else shares
+    return Bearing(problem, cones).added(problem, shares)
+
+
+def _least(problem: Problem, cones: Cones) -> tuple[Crushing, Optimum, float, Array] | None:
+    """Find the programme, its optimum and strength, and the shares of soil that need least."""
     require_sizes(problem)
-    cones, pull = Cones(problem), problem.applied_forces()
+    pull = problem.applied_forces()
     # Of which joints bear about what blocks weigh, so that its multiples are numbers near 1.
     unit = float(np.median(problem.unit_force * cones.unit / joint_areas(problem)))
     for _ in range(TRIES):
         crushing = Crushing(problem, cones, unit)
         try:
-            found = crushing.least(-cones.loads(pull))
+            found, shares = crushing.least(-cones.loads(pull))
         except Unsolved:
             unit *= FARTHER
             continue
@@ -203,7 +242,7 @@ def strength_needed(problem: Problem) -> Needed | None:
             return None
         share = float(found.values[-1])
         if 1 / ALIKE < share < ALIKE:
-            return _needed(cones, crushing, found, unit)
+            return crushing, found, unit, shares
         unit *= share
     raise Unsolved
 
@@ -223,7 +262,11 @@ def require_sizes(problem: Problem) -> None:
     known = problem.weighed and problem.has_size
     value = "none" if problem.strength is None else f"{problem.strength / 1e6:g} MPa"
     require(known, "strength", value, "left out, or sizes and unit weights in m and kN/m3")
-    allowed = "left out beside --fill-passive: what soil bears is not sought with it"
-    require(not bears(problem), "strength", value, allowed)
     corners = bool(problem.assembly.joint_arrays.is_corner.any())
     require(not corners, "strength", value, "left out: a corner bears a block without a width")
+
+
+def _bounds(at: NDArray[np.intp], sign: float, count: int) -> Any:
+    """Return rows that bound some of the values, below with a sign of -1."""
+    entries = np.full(at.size, sign), (np.arange(at.size), at)
+    return sparse.csc_array(entries, shape=(at.size, count))
