@@ -16,10 +16,9 @@ from blocksim.arch.answers import ArchAnswer, ArchBracket
 from blocksim.ask.bracket import Bracket, bracket
 from blocksim.ask.check import Check, check
 from blocksim.ask.methods import STATIC
-from blocksim.common.checks import endless_text
 from blocksim.common.errors import MissingPart
 from blocksim.engines import NAMES, get_engine
-from blocksim.sweeps.case import Case, Pace, Row
+from blocksim.sweeps.case import Case, Pace, Row, written
 from blocksim.sweeps.statics import by_statics
 
 _ENCODER = json.JSONEncoder(allow_nan=False, check_circular=False)
@@ -166,7 +165,7 @@ def _checked(seen: Check) -> Row:
         "method": seen.method,
         "verdict": seen.verdict.value,
         "rest": seen.rest,
-        "load_factor": endless_text(seen.load_factor),
+        "load_factor": written(seen.load_factor),
         "reason": seen.reason,
     }
     if seen.shaken is not None:
@@ -179,7 +178,7 @@ def _bracketed(found: Bracket) -> Row:
     return {
         "method": found.method,
         "unit": found.unit,
-        "limit": endless_text(found.limit),
+        "limit": written(found.limit),
         "low": found.low,
         "high": found.high,
         "confirmed": found.confirmed,

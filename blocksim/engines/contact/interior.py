@@ -59,7 +59,8 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
     apart = bands.along(edges, x) + offset + lift
     least, pressed = STEEP_START if step.friction.some_steep else START
     room: Array = np.maximum(np.abs(apart), least)
-    short, forces = apart - room, np.full_like(apart, pressed)
+    # What is far open presses little: all products begin alike.
+    short, forces = apart - room, least * pressed / room
     count = 0
     for count in range(MOST_STEPS):  # noqa: B007
         product = float(np.vdot(room, forces)) / room.size

@@ -210,8 +210,8 @@ class ContactProblem:
             yield path_from_guess(step, last, NEAREST_PIECES)
         if not tried.is_enough:
             yield path_from_guess(step, first)
-        if not tried.is_enough:
-            yield path_from_apart(step, last.forces)
+        if steep or not tried.is_enough:
+            yield path_from_apart(step)
 
 
 class _Tried:
