@@ -1,10 +1,16 @@
 """The mode an arch starts with, over the whole map and where modes are narrow.
 
 Question: does an engine see, close to the least thickness, the mechanism that limit analysis
-finds for the same voussoirs, in all seven modes? Asked about are the arches of `mode_draws.py`,
-of 20 to 40 voussoirs. A voussoir of these spans the band of rsr, so that limit analysis itself
-calls most draws of rsr another mode: the same half-angles and frictions are asked again with
-120 to 200 voussoirs, and others within 0.2 % of those of S and J, where rsr meets other modes.
+finds for the same voussoirs, in all seven modes? Of ten arches of 20 to 40 voussoirs five lie
+anywhere on the map: half-angle even from 30 to 159 deg, friction log-uniform from what lets any
+thickness stand to 4. Four have one of the mixed modes each (srr, rrs, rsr, rs), which have
+little room: they are drawn in the same way until one comes that has it. The tenth lies on the
+line where purely sliding arches are published, and is 1.1 to 3 times as thick as the least
+there: not its thickness is critical but its friction. Purely overturning arches (r) need
+boundless friction, of which engines take 1000: they are left out. A voussoir of these spans the
+band of rsr, so that limit analysis itself calls most draws of rsr another mode: the same half-
+angles and frictions are asked again with 120 to 200 voussoirs, and others within 0.2 % of those
+of S and J, where rsr meets other modes.
 
 The mode is that of the mechanism an arch starts with, by the onset test: `direct` 1e-5 below
 the least thickness of the voussoirs (or the friction they need, where that is critical), pymunk
@@ -22,8 +28,8 @@ import itertools
 import math
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, replace
+from functools import cache, partial
 from pathlib import Path
 
 import matplotlib as mpl
@@ -33,22 +39,25 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from analysis.command import run
-from analysis.mode_draws import critical_draws, draw
 from analysis.rows import FIGURES, read_kept, write_rows
 from analysis.saved_answers import Row, answers
 from blocksim import Arch, CircularArch, Mode
 from blocksim.arch.circular import ETA_MAX
 from blocksim.arch.limit import least_thickness
+from blocksim.arch.limit.bulk import which_stand
 from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import observed_mode
 from blocksim.arch.theory import least_thickness as theory_of
-from blocksim.arch.theory.regions import landmarks
+from blocksim.arch.theory.arrays import least_thicknesses
+from blocksim.arch.theory.map import divide_friction
+from blocksim.arch.theory.regions import at_inner_sliding, landmarks
+from blocksim.blocks.assembly import Array
 from blocksim.simulation.observation import observe
 from blocksim.sweeps.answers import version_of
 from blocksim.view.mapregions import draw_regions
 from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
 
-SEED = 14
+SEED, OF_MODES = 14, 2024
 ARCHES = 2300
 FINEST = 200
 FEWEST = 120
@@ -56,13 +65,20 @@ BELOW = {"direct": 1e-5, "pymunk": 5e-4}
 AROUND = 0.002
 """Share of half-angle and friction within which arches are drawn about S and J."""
 NONE = "none"
+ANYWHERE = None
+TURNS = (ANYWHERE, Mode.SRR, ANYWHERE, Mode.RRS, ANYWHERE, Mode.RSR, ANYWHERE, Mode.RS)
+TURNS += (ANYWHERE, Mode.SS)
+"""What ten arches in a row are drawn from."""
+NARROWEST, WIDEST, MOST_FRICTION = 30.0, 159.0, 4.0
+BLOCK = 4096
+"""Arches drawn together."""
 
 
 @dataclass(frozen=True)
 class Fine:
     """An arch: where it was drawn (map, rsr, S or J), half-angle [deg], friction, voussoirs.
 
-    `eta` where friction is critical, not thickness.
+    `eta` where friction is critical, not thickness, with that friction in `mu`.
     """
 
     where: str
@@ -73,19 +89,69 @@ class Fine:
 
 
 def drawn(sweep: int, rsr: int, about: int, most: int) -> list[Fine]:
-    """Draw the arches: those of `mode_draws`, its rsr with more voussoirs, about S and J."""
+    """Draw the arches: over the map, its rsr with more voussoirs, about S and J."""
     counts = np.random.default_rng(SEED)
-    every = [
-        Fine("map", each.alpha_deg, each.mu, each.voussoirs, each.eta)
-        for each in itertools.islice(draw(), sweep)
-    ]
+    every = list(itertools.islice(draw(), sweep))
     every += [
-        Fine(Mode.RSR.value, each.alpha_deg, each.mu, int(counts.integers(FEWEST, most + 1)))
+        replace(each, where=Mode.RSR.value, voussoirs=int(counts.integers(FEWEST, most + 1)))
         for each in itertools.islice(critical_draws(Mode.RSR), rsr)
     ]
     for name in ("S", "J"):
         every += itertools.islice(_near(name, most), about)
     return every
+
+
+def draw() -> Iterator[Fine]:
+    """Draw arches, without end."""
+    streams = {turn: critical_draws(turn) for turn in TURNS}
+    for turn in itertools.cycle(TURNS):
+        yield next(streams[turn])
+
+
+def critical_draws(turn: Mode | None) -> Iterator[Fine]:
+    """Draw arches of one kind, independently of the others."""
+    random = np.random.default_rng([OF_MODES, TURNS.index(turn)])
+    while True:
+        alpha_deg = random.uniform(NARROWEST, WIDEST, BLOCK)
+        least = np.interp(alpha_deg, *divide())
+        mu = least * (MOST_FRICTION / least) ** random.random(BLOCK)
+        voussoirs = random.integers(20, 41, BLOCK)
+        thicker = random.uniform(1.1, 3.0, BLOCK)
+        if turn is Mode.SS:
+            yield from map(_on_divide, alpha_deg, voussoirs, thicker)
+        else:
+            yield from _critical(turn, alpha_deg, mu, voussoirs)
+
+
+@cache
+def divide() -> tuple[Array, Array]:
+    """Half-angles [deg] and the friction below which no thickness stands."""
+    angles = np.linspace(NARROWEST, WIDEST, 200)
+    return angles, np.array([divide_friction(math.radians(angle)) for angle in angles])
+
+
+def _critical(
+    turn: Mode | None, alpha_deg: Array, mu: Array, voussoirs: Array
+) -> Iterator[Fine]:
+    """Those that stand at some thickness and have the mode asked for."""
+    there = least_thicknesses(np.radians(alpha_deg), mu)
+    wanted = (there.eta < ETA_MAX / 1.005) & ((there.mode == turn) | (turn is ANYWHERE))
+    for k in np.flatnonzero(wanted):
+        yield Fine("map", float(alpha_deg[k]), float(mu[k]), int(voussoirs[k]))
+
+
+def _on_divide(alpha_deg: float, voussoirs: int, thicker: float) -> Fine:
+    """Draw an arch on the line of purely sliding ones, and the friction its voussoirs need."""
+    half_angle, count = math.radians(alpha_deg), int(voussoirs)
+    mu = divide_friction(half_angle)
+    least, _ = at_inner_sliding(mu, half_angle, "centreline")
+    eta = float(min(thicker * least, ETA_MAX))
+    low, high = mu / 2, mu * 2
+    for _ in range(40):
+        middle = (low + high) / 2
+        stands = bool(which_stand(half_angle, eta, middle, count))
+        low, high = (low, middle) if stands else (middle, high)
+    return Fine("map", float(alpha_deg), high, count, eta)
 
 
 def _near(name: str, most: int) -> Iterator[Fine]:

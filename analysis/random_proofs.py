@@ -239,14 +239,12 @@ def _said(problem: Problem, engine: str) -> str:
         return "refused"
 
 
-def _kept(index: int) -> dict[str, Any]:
-    return vars(asked(index))
-
-
 def main(out: Path, *, quick: bool = False, problems: int = 10_000) -> list[dict[str, Any]]:
     """Ask 10,000 problems, or 40; what engines are asked about comes last."""
     indices = sorted(range(40 if quick else problems), key=lambda at: (len(engines_of(at)), at))
-    rows: list[dict[str, Any]] = answers(out / "random_proofs.jsonl", indices, _kept, 1)
+    rows: list[dict[str, Any]] = answers(
+        out / "random_proofs.jsonl", indices, lambda index: vars(asked(index)), 1
+    )
     rows.sort(key=lambda row: row["index"])
     write_rows(out / "random_proofs.csv.gz", rows)
     return rows

@@ -8,7 +8,7 @@ the load, tilt, friction, thickness or overhang at which they fall, 0.1 % from i
 Truth is none of the methods' own: `tests/certificates.py` proves by plain statics that forces
 of equilibrium exist, or that none do. That they exist means that blocks *can* rest: where
 joints slide friction may let them move, too. So "collapses" is counted as false where they
-exist, and what was then seen to move is counted apart (`moves_too`). The ratio only says where
+exist, and what was then seen to move is counted apart ("moves too"). The ratio only says where
 to ask.
 
 Critical values of arches of the map come from the statics of voussoirs, those of columns and
@@ -62,17 +62,6 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 @dataclass(frozen=True)
-class Told:
-    """Answers of one method: of those that are proved, how many are right, false, open."""
-
-    asked: int
-    right: int
-    false: int
-    undecided: int
-    moves_too: int
-
-
-@dataclass(frozen=True)
 class Result:
     """Headline numbers.
 
@@ -81,7 +70,9 @@ class Result:
     problems, unproved : int
     unexpected : int
         Proved to do other than the critical value says.
-    told : dict of str to Told
+    told : dict of str to Counter
+        For each method, answers where what is right is proved: right, false, open; of them,
+        where something was seen to move that can rest ("moves too").
     same : dict of str to (int, int)
         For each way of asking again, answers that are the same, of how many.
     """
@@ -89,7 +80,7 @@ class Result:
     problems: int
     unproved: int
     unexpected: int
-    told: dict[str, Told]
+    told: dict[str, Counter[str]]
     same: dict[str, tuple[int, int]]
 
 
@@ -126,13 +117,9 @@ def said(index: int, method: str, change: str = "") -> tuple[str, str]:
 
 def changed(problem: Problem, change: str, seed: int) -> Problem:
     """Mirror or renumber a problem."""
-    match change:
-        case "mirrored":
-            return mirrored(problem)
-        case "renumbered":
-            return renumbered(problem, seed)
-        case _:
-            return problem
+    if change == "mirrored":
+        return mirrored(problem)
+    return renumbered(problem, seed) if change else problem
 
 
 def ask(one: Case) -> Row:
@@ -269,21 +256,16 @@ def summary(rows: Sequence[Row], compared: Sequence[Row]) -> Result:
     )
 
 
-def told_by(method: str, proved: Sequence[Row]) -> Told:
+def told_by(method: str, proved: Sequence[Row]) -> Counter[str]:
     """Count the answers of a method."""
-    verdicts = [(row, str(row[method])) for row in proved if row[method]]
-    told = Counter(
-        "right" if verdict == row["proved"]
-        else "open" if verdict in {"undecided", "error"} else "false"
-        for row, verdict in verdicts
-    )  # fmt: skip
-    return Told(
-        asked=len(verdicts),
-        right=told["right"],
-        false=told["false"],
-        undecided=told["open"],
-        moves_too=sum(f"{method}: moves too" in str(row["note"]) for row, _ in verdicts),
-    )
+    told = Counter[str]()
+    for row in proved:
+        verdict = str(row[method] or "")
+        if verdict:
+            is_open = verdict in {"undecided", "error"}
+            told["right" if verdict == row["proved"] else "open" if is_open else "false"] += 1
+            told["moves too"] += f"{method}: moves too" in str(row["note"])
+    return told
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 engine) the scores that `blocksim suite score` shows beside a new one (`known.json`), and the
 figure. With `--answers FOLDER` answers in files replace those of the same engine, settings and
 scene. Scenes that an engine was not asked about are left out of its score, by dimensions.
+Levels that it was not asked about have no rows; it is then in neither scores nor figure.
 """
 
 from __future__ import annotations
@@ -21,14 +22,17 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from analysis.command import run
-from analysis.rows import write_rows
+from analysis.rows import provenance, write_rows
 from blocksim.common.files import make_folder
 from blocksim.suite.answers import Head, read_answers
 from blocksim.suite.export import groups, questions
+from blocksim.suite.families import LEVELS
 from blocksim.suite.score import Row, Score, scored
 
 KEPT = Path(__file__).parent / "figures" / "referee.csv.gz"
 MARKS = "osD^vPX*<>hp"
+SAME = ("engine", "engine_version", "settings", "scene")
+"""Columns in which a row is told from others."""
 NONE = 100.0
 """Where an engine is drawn that is right at no level [%]."""
 
@@ -43,13 +47,15 @@ def scores_of(folder: Path) -> list[Score]:
 
 
 def rows_of(score: Score) -> list[dict[str, object]]:
-    """Return rows of a score, numbers as short as they are known."""
+    """Return rows of levels that were answered, numbers as short as they are known."""
     head = score.head
+    answered = {row.level for row in score.rows if row.seconds}
     # `version` is that of blocksim, in rows of any study.
     said = {"engine": head.engine, "engine_version": head.version, "settings": head.settings}
     return [
         said | {name: _short(value) for name, value in asdict(row).items() if name != "group"}
         for row in score.rows
+        if row.level in answered
     ]
 
 
@@ -57,25 +63,29 @@ def _short(value: object) -> object:
     return f"{value:.3g}" if isinstance(value, float) else "" if value is None else value
 
 
+def _lines(path: Path) -> list[dict[str, Any]]:
+    with io.TextIOWrapper(gzip.open(path)) as file:
+        return list(csv.DictReader(file))
+
+
 def read(path: Path) -> list[Score]:
     """Read rows."""
     asked = questions()
     found: dict[Head, list[Row]] = {}
-    with io.TextIOWrapper(gzip.open(path)) as file:
-        for line in csv.DictReader(file):
-            head = Head(
-                engine=line["engine"],
-                version=line["engine_version"],
-                settings=line["settings"],
-            )
-            row: dict[str, Any] = {
-                name: float(line[name]) if line[name] else None
-                for name in ("level", "drift", "gain", "asymmetry", "error", "seconds")
-            }
-            row |= {"scene": line["scene"], "answer": line["answer"]}
-            row |= {"stands": None if not line["stands"] else line["stands"] == "True"}
-            row |= {"group": asked[line["scene"]].group}
-            found.setdefault(head, []).append(Row(**row))
+    for line in _lines(path):
+        head = Head(
+            engine=line["engine"],
+            version=line["engine_version"],
+            settings=line["settings"],
+        )
+        row: dict[str, Any] = {
+            name: float(line[name]) if line[name] else None
+            for name in ("level", "drift", "gain", "asymmetry", "error", "seconds")
+        }
+        row |= {"scene": line["scene"], "answer": line["answer"]}
+        row |= {"stands": None if not line["stands"] else line["stands"] == "True"}
+        row |= {"group": asked[line["scene"]].group}
+        found.setdefault(head, []).append(Row(**row))
     return [Score(head=head, rows=tuple(rows)) for head, rows in found.items()]
 
 
@@ -113,14 +123,6 @@ def drawn(scores: list[Score]) -> Figure:
     return figure
 
 
-def _renewed(kept: list[Score], new: list[Score]) -> list[Score]:
-    """Put new rows in the place of those of the same engine, settings and scene."""
-    found: dict[Head, dict[str, Row]] = {}
-    for score in (*kept, *new):
-        found.setdefault(score.head, {}).update({row.scene: row for row in score.rows})
-    return [Score(head=head, rows=tuple(rows.values())) for head, rows in found.items()]
-
-
 def _level(score: Score, group: str) -> float:
     if not score.of(group):
         return np.nan
@@ -136,17 +138,19 @@ def main(
 ) -> list[dict[str, Any]]:
     """Score answers, or read what is kept, and draw."""
     make_folder(out)
-    kept = read(KEPT)
+    path = KEPT
     if answers is not None:
-        kept = _renewed(kept, scores_of(answers))
-        write_rows(out / KEPT.name, [row for score in kept for row in rows_of(score)])
-        # Rounded as they are kept.
-        kept = read(out / KEPT.name)
-    scores = sorted(kept, key=lambda each: (each.nearest() or NONE, each.wrong))
+        path = out / KEPT.name
+        new = [row | provenance() for score in scores_of(answers) for row in rows_of(score)]
+        lines = {tuple(row[name] for name in SAME): row for row in (*_lines(KEPT), *new)}
+        write_rows(path, [*lines.values()])
+    # Rounded as they are kept.
+    whole = [each for each in read(path) if set(LEVELS) <= {row.level for row in each.rows}]
+    scores = sorted(whole, key=lambda each: (each.nearest() or NONE, each.wrong))
     records = [score.record() for score in scores]
     (out / "known.json").write_text(json.dumps(records, separators=(",", ":")) + "\n")
     figure = drawn(scores)
-    figure.savefig(out / "referee.png", dpi=100)
+    figure.savefig(out / "referee.png", dpi=100)  # type: ignore[reportUnknownMemberType]
     plt.close(figure)
     return [
         {name: each[name] for name in ("engine", "settings", "nearest_level", "wrong")}

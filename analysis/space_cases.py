@@ -3,12 +3,11 @@
 Question: which engine is right near the limit, in space, and how often? Each case of
 `tests/structures/space` is asked whether it stands; one with a load factor at a share less and
 at the same share more of it. Asked are the onset test and the moving run, as `check` does. Rows
-of each question go to disk as they are found, and are not asked again.
+of each question are kept in OUT/space_cases.jsonl as they are found, and not asked for again.
 """
 
 from __future__ import annotations
 
-import csv
 import itertools
 import time
 from collections.abc import Iterator
@@ -18,9 +17,9 @@ from typing import Any
 
 import blocksim
 from analysis.command import run
-from analysis.rows import provenance, write_rows
+from analysis.rows import write_rows
+from analysis.saved_answers import Row, answers
 from blocksim import Problem, Verdict
-from blocksim.common.files import make_folder
 from tests.space_cases import NAMES, asked, case
 
 BESIDE = {
@@ -33,7 +32,7 @@ QUICK = ("block_topples_20", "tower_113")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class Line:
     """One question.
 
     Parameters
@@ -73,13 +72,15 @@ def questions(name: str, method: str) -> Iterator[tuple[float, Problem[Any], Ver
             yield side, problem, known
 
 
-def row(name: str, method: str, beside: float, problem: Problem[Any], known: Verdict) -> Row:
-    """Ask one question."""
+def ask(of: tuple[str, str, int]) -> Row:
+    """Ask one question: of a method, about a case, by its number."""
+    method, name, number = of
+    beside, problem, known = list(questions(name, method))[number]
     began = time.process_time()
     answer = blocksim.check(problem, method=method)
     seconds = time.process_time() - began
     is_open, is_right = answer.verdict is Verdict.UNDECIDED, answer.verdict is known
-    return Row(
+    line = Line(
         case=name,
         method=method,
         beside=beside,
@@ -90,9 +91,10 @@ def row(name: str, method: str, beside: float, problem: Problem[Any], known: Ver
         seconds=round(seconds, 2),
         evidence=answer.reason,
     )
+    return asdict(line)
 
 
-def table(rows: list[dict[str, str]]) -> str:
+def table(rows: list[Row]) -> str:
     """Count what is right, open and false, by method and share, as lines of Markdown.
 
     A verdict has no share: it counts with each.
@@ -100,7 +102,7 @@ def table(rows: list[dict[str, str]]) -> str:
     lines = ["| method | beside | right | open | false | time |", "|---|---|---|---|---|---|"]
     for method, shares in BESIDE.items():
         for beside in shares:
-            near = [each for each in rows if abs(float(each["beside"])) in (0.0, beside)]
+            near = [each for each in rows if abs(float(each["beside"] or 0)) in (0.0, beside)]
             mine = [each for each in near if each["method"] == method]
             if not mine:
                 continue
@@ -108,7 +110,7 @@ def table(rows: list[dict[str, str]]) -> str:
                 sum(each["right"] == word for each in mine)
                 for word in ("right", "open", "false")
             )
-            spent = sum(float(each["seconds"]) for each in mine)
+            spent = sum(float(each["seconds"] or 0) for each in mine)
             counts = f"{right} | {left_open} | {wrong} | {spent:,.0f} s"
             lines.append(f"| {method} | {beside:.1%} | {counts} |")
     return "\n".join(lines)
@@ -128,22 +130,16 @@ def main(out: Path, *, quick: bool = False, method: str = "", only: str = "") ->
     only : str, optional
         Cases whose names hold this.
     """
-    make_folder(out)
-    path = out / "space_cases.csv"
-    rows = list[dict[str, str]]()
-    if path.exists():
-        with path.open(encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-    there = {(each["case"], each["method"], float(each["beside"])) for each in rows}
-    made = provenance()
-    for each, name in itertools.product(
-        [method] if method else BESIDE, QUICK if quick else NAMES
-    ):
-        for beside, problem, known in questions(name, each):
-            if only in name and (name, each, beside) not in there:
-                found = asdict(row(name, each, beside, problem, known)) | made
-                rows.append({key: str(value) for key, value in found.items()})
-                write_rows(path, rows)
+    asked = [
+        (each, name, number)
+        for each, name in itertools.product(
+            [method] if method else BESIDE, QUICK if quick else NAMES
+        )
+        if only in name
+        for number, _ in enumerate(questions(name, each))
+    ]
+    rows = answers(out / "space_cases.jsonl", asked, ask, 1)
+    write_rows(out / "space_cases.csv", rows)
     return table(rows)
 
 

@@ -308,27 +308,21 @@ def main(
     processes: int = 1,
 ) -> Result:
     """Ask every case, or in a quick run few; write the table."""
+    # The smallest first: of a run that is stopped most cases are there.
+    by_size = sorted(
+        names(), key=lambda name: sum(len(each["blocks"]) for each in scenes(name))
+    )
     asked = [
         (name, number)
-        # The smallest first: of a run that is stopped most cases are there.
-        for name in (QUICK if quick else sorted(names(), key=_blocks))
+        for name in (QUICK if quick else by_size)
         for number, _ in enumerate(questions(name))
     ]
     kept = "structure_cases" if engine == "direct" else f"structure_cases_{engine}"
-    rows = answers(
-        out / f"{kept}.jsonl",
-        asked,
-        partial(ask, moving=moving, engine=engine, aside=aside),
-        processes,
-    )
+    say = partial(ask, moving=moving, engine=engine, aside=aside)
+    rows = answers(out / f"{kept}.jsonl", asked, say, processes)
     write_rows(out / f"{kept}.csv", rows)
     own = [{field.name: row[field.name] for field in fields(Line)} for row in rows]
     return Result(tuple(Line(**cast("dict[str, Any]", row)) for row in own), engine)
-
-
-def _blocks(name: str) -> int:
-    """Count the bodies of a case."""
-    return sum(len(scene["blocks"]) for scene in scenes(name))
 
 
 def table(result: Result) -> str:

@@ -31,7 +31,7 @@ TAG = re.compile(r"\\tag\{([^}]*)\}")
 NAMED = re.compile(r"<mi>(sin|cos|cot|arctan|min)</mi>")
 """Functions, which want a little room around them."""
 FIGURES = "analysis/figures"
-SHOWN = {".png", ".csv", ".gz"}
+SHOWN = {".png", ".csv", ".gz", ".mp4"}
 NAMING = re.compile(r"<code>[^<]*--[^<]*</code>")
 OPTION = re.compile(r"--[\w-]+")
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^()\s]+)\)")

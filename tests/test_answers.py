@@ -39,7 +39,8 @@ CHECKS = (
     f"{ARCH} --lean 3 --method pybullet --voussoirs 5",
     f"{ARCH} --tilt 20",
     f"{ARCH} --fill 0.3 --point-load 0.2 1",
-    "pointed-arch --mu 0.7 --fill 0.3 --tilt 4",
+    "pointed-arch --mu 0.7 --fill 0.3",
+    "pointed-arch --mu 0.7 --tilt 4",
     "oppenheim_7 --load 0.4 --method direct",
     f"column --mu 0.7 {PULSE}",
 )

@@ -222,6 +222,21 @@ def test_proofs_are_accepted(written: list[Table]) -> None:
         assert verify(table).startswith(f"proved: {table['claim']}")
 
 
+@pytest.mark.parametrize("below", [1e-9, 1e-5, 0.3])
+@pytest.mark.parametrize(
+    ("half_angle", "mu"), [(75, 0.8), (90, 0.35), (120, 0.9), (75, math.inf)]
+)
+@pytest.mark.parametrize("voussoirs", [8, 27])
+def test_arches_that_fall_are_proved(
+    half_angle: float, mu: float, voussoirs: int, below: float
+) -> None:
+    """By their own mechanism; next to the limit, or without slip, by the general programme."""
+    arch = CircularArch(
+        half_angle_deg=half_angle, ratio=1 - below, friction=mu, voussoirs=voussoirs
+    )
+    assert verify(proof_of(arch.problem())).startswith("proved: collapses")
+
+
 def spoilt(table: Table, random: np.random.Generator) -> Table:
     """Change a force, a rate, a corner, a sign, or leave out a block; sealed anew."""
     made = copy.deepcopy(table)
@@ -278,7 +293,9 @@ def test_what_doubles_could_not_prove_is_proved_in_rationals(index: int) -> None
     assert row.verified, row
 
 
-@pytest.mark.parametrize("index", [5703, 8725])
+@pytest.mark.parametrize(
+    "index", [5703, 8725, *(pytest.param(each, marks=pytest.mark.long) for each in (417, 2529))]
+)
 def test_what_rounding_alone_would_hold_is_undecided(index: int) -> None:
     """Forces of 1e13 times the weight would balance: the last digits of corners decide."""
     _, problem = random_proofs.edge(index)

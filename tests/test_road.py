@@ -85,7 +85,7 @@ def weights(problem: Problem) -> np.ndarray:
 
 def structure_of_arch(arch: Arch, mu: float) -> Problem:
     """An arch with supports drawn."""
-    return CircularArch.of(arch, friction=mu).between_supports().problem()
+    return CircularArch.of(arch, friction=mu).but(on_supports=True).problem()
 
 
 def above(outer: float, half_angle: float, height: float) -> float:
@@ -385,3 +385,42 @@ def test_what_lies_uppermost_bears_it_and_supports_bear_their_own() -> None:
         borne[load.blocks[0]] += float(load.force[1])
     # One metre of three lies on the floor.
     assert borne == pytest.approx([-1.5, -0.5])
+
+
+AXLE = "--point-load", "-1.35", "20"
+
+
+@pytest.mark.parametrize("more", [("--fill", "0.5"), ("--fill", "0.5", *AXLE), AXLE])
+def test_the_line_that_was_measured_stays_under_a_road(more: tuple[str, ...]) -> None:
+    """The least thickness under fill and loads is where a check of that thickness changes."""
+    line = "--span", "8", "--rise", "2.5", "--mu", "0.6", *more
+    thick = "--thickness", "0.5"
+    least = json.loads(inside("bracket", *line, *thick, "--json").stdout)["limit"]
+    codes = [
+        inside("check", *line, "--thickness", repr(share * least)).returncode
+        for share in (0.9999, 1.0001)
+    ]
+    assert codes == [1, 0]
+
+
+@pytest.mark.parametrize(
+    "turn",
+    [("check", "--tilt", "10"), ("check", "--lean", "10"), ("bracket", "--over", "tilt")],
+    ids=" ".join,
+)
+@pytest.mark.parametrize("more", [("--fill", "0.5"), AXLE], ids=" ".join)
+def test_what_bears_a_road_stands_upright(turn: tuple[str, ...], more: tuple[str, ...]) -> None:
+    """Weights on a road are forces: they would keep their direction while gravity turns."""
+    line = "--span", "8", "--rise", "2.5", "--thickness", "0.5", "--mu", "0.7", *more
+    done = inside(turn[0], *line, *turn[1:])
+    assert done.returncode == 2
+    assert "must be left out under fill or loads on a road" in done.stderr
+    assert inside("check", *line, "--method", "limit").returncode == 0
+
+
+def test_what_has_no_mass_is_said_to_be_neither_pushed_nor_shaken() -> None:
+    line = "check", "--span", "8", "--rise", "2.5", "--thickness", "0.5", "--mu", "0.7"
+    push = *line, "--push", "0.1"
+    words = "fill and loads on the road are not pushed"
+    assert words in inside(*push, "--fill", "0.5").stdout
+    assert words not in inside(*push).stdout

@@ -43,7 +43,6 @@ from blocksim.blocks.space.polyhedron import frame
 from blocksim.common.fields import fields_of
 from blocksim.limit.space import can_rest, largest_load
 from blocksim.view.solidfigure import solid_figure
-from blocksim.view.solidscene import pressed
 from blocksim.view.style import JOINTS
 
 SOLID_KINDS = {name: kind for name, kind in KINDS.items() if kind.in_space}
@@ -386,11 +385,10 @@ def test_a_groin_vault_weighs_and_thrusts_as_its_section_says() -> None:
         float(np.average(centres[right, 0], weights=weights[right])),
     )
     assert half == pytest.approx(volume / 2, rel=1e-12)
-    static = can_rest(problem)
-    assert static.point_forces is not None
-    sums, places = pressed(problem, static.point_forces)
+    carried = can_rest(problem).resultants
+    assert carried is not None
     bears = [at for at, joint in enumerate(problem.assembly.joints) if joint.before < 0]
-    thrust = -sum(float(sums[at, 0]) for at in bears if places[at, 0] > 0)
+    thrust = -sum(float(carried.force[at, 0]) for at in bears if carried.point[at, 0] > 0)
     # At the crown it acts within the thickness, at the springing likewise.
     assert half * (low - out) / high < thrust < half * (high - out) / low
 

@@ -18,6 +18,8 @@ from worlds import observe
 import blocksim
 from blocksim import Dome, Problem, Solid, Verdict, extruded, structure_of
 from blocksim.engines.direct import USUAL
+from blocksim.engines.solid.meeting import Points
+from blocksim.engines.solid.memory import Borne
 from blocksim.engines.solid.stepping import SolidBlocks
 from blocksim.view.film import Film
 
@@ -289,3 +291,33 @@ def test_bullet_finds_one_contact_at_each_corner(case: str) -> None:
     apart = np.linalg.norm(found[:, None] - known, axis=2)
     assert apart.min(axis=0).max() < 2e-6
     assert apart.min(axis=1).max() < 2e-6
+
+
+def test_what_a_point_bore_goes_on_to_the_nearest_of_the_same_two_bodies() -> None:
+    """The push of one body on the other stays what it was, whichever has the face."""
+    draw = np.random.default_rng(0)
+    normals = np.array([[0.0, 0.0, 1.0], [0.0, 0.6, 0.8], [0.0, 0.0, 1.0]])
+    hulls, places = np.array([0, 0, 0]), np.diag([0.0, 1.0, 0.0])
+    places[2] = 0.0, 0.8, 0.0
+    last = Points(hulls, hulls + 1, places, normals, np.zeros(3), np.array([1, 2, 3]))
+    forces = draw.uniform(0.1, 1.0, (3, 3))
+    # The second point is there still; the first is now on the other's face, the third nowhere.
+    here, there = np.array([1, 0, 0]), np.array([0, 1, 2])
+    turned = normals * [[-1.0], [1.0], [1.0]]
+    now = Points(here, there, places + 1e-3, turned, np.zeros(3), np.array([7, 2, 9]))
+    found = Borne(last, forces).at(now, np.array([0, 1, 2]))
+    pushes = np.einsum("pi,pij->pj", forces, last.axes)
+    again = np.einsum("pi,pij->pj", found, now.axes)
+    assert again[0] == pytest.approx(-pushes[0])
+    assert again[1] == pytest.approx(pushes[1] + pushes[2])
+    assert not found[2].any()
+
+
+@pytest.mark.long
+def test_a_loaded_dome_that_slides_is_told_by_its_motion() -> None:
+    """Corners slide over faces from the first step on."""
+    for problem, verdict in asked("dome_8_5_loaded", 0.01):
+        answer = blocksim.check(problem, method="direct")
+        assert answer.verdict is verdict
+        assert answer.recording is not None
+        assert answer.recording.quality.residual < 1e-5

@@ -100,10 +100,8 @@ def test_joints_are_coloured_by_what_they_are_seen_to_do() -> None:
 def test_forces_are_drawn_where_they_balance_the_weights() -> None:
     """From the bottom to the top of a tower: three, two and one boxes' weight."""
     answer = blocksim.check(tower())
-    static = answer.static
-    assert static is not None
-    assert static.point_forces is not None
-    lines, shares = force_lines(answer.problem, static.point_forces)
+    assert answer.resultants is not None
+    lines, shares = force_lines(answer.problem.assembly, answer.resultants)
     ways = lines[:, 1] - lines[:, 0]
     assert np.abs(ways[:, :2]).max() < 1e-6 * np.abs(ways).max()
     assert sorted(shares) == pytest.approx([1 / 3, 2 / 3, 1])

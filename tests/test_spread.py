@@ -23,7 +23,9 @@ from blocksim import (
     CircularArch,
     Column,
     JointState,
+    Verdict,
     bracket,
+    check,
     equilibrium,
     load_recording,
     structure_of,
@@ -131,9 +133,12 @@ def test_a_three_hinged_arch_of_two_blocks_falls_when_it_is_flat(steps: int | No
     assert path.value == pytest.approx(flat, rel=1e-8)
 
 
-SPREADING = ((7, 0.35), (8, 0.35), (17, 0.15), (31, 0.25))
+SPREADING = (
+    *((7, 0.35), (8, 0.35), (9, 0.2), (11, 0.4), (13, 0.25), (15, 0.4)),
+    *((17, 0.15), (19, 0.3), (21, 0.2), (25, 0.35), (27, 0.15), (31, 0.25)),
+)
 """Voussoirs and thickness of semicircles."""
-SHARES = (0.5, 0.51, 1.0)
+SHARES = (0.5, 0.51, 0.0, 1.0, 0.25)
 """Of the motion, that the left support does."""
 Hinges = tuple[int, int, int]
 
@@ -263,7 +268,13 @@ def test_a_support_that_turns_takes_the_branch_that_rests() -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("arch", "share"), [((7, 0.35), 0.3), ((11, 0.4), 0.5)])
+@pytest.mark.parametrize(
+    ("arch", "share"),
+    [
+        *(((7, 0.35), 0.3), ((9, 0.2), 0.5), ((11, 0.4), 0.5), ((17, 0.15), 1.0)),
+        *(((21, 0.2), 0.5), ((27, 0.15), 0.0), ((31, 0.25), 0.51)),
+    ],
+)
 def test_direct_brackets_the_stable_branch(arch: tuple[int, float], share: float) -> None:
     (want,) = first_fall(*arch)
     found = bracket(shared(*arch, share).asked, over="spread", method="direct")
@@ -437,7 +448,7 @@ ARCH = CircularArch(span=8.0, rise=3.0, thickness=0.6, voussoirs=14, friction=0.
 
 def test_an_arch_that_is_spread_has_its_least_thrust() -> None:
     """Hinges at crown and haunches: moments of one half, turned as far as its way."""
-    problem = ARCH.between_supports().problem()
+    problem = ARCH.but(on_supports=True).problem()
     spread = 0.02
     lies = spread_by(problem, spread)
     points = thrusts_over(problem, 8)
@@ -516,3 +527,23 @@ def test_a_portal_under_fill_thrusts_as_a_half_does() -> None:
     assert told["thrust_max_kN"] == pytest.approx(greatest, rel=1e-6)
     for each in told["reactions"]:
         assert each["vertical_kN"] == pytest.approx(sum(part for part, _ in parts), rel=1e-9)
+
+
+def test_what_fell_stands_nowhere_beyond() -> None:
+    """A flat arch straightens until its three hinges are in line: then nothing holds it."""
+    flat = structure_of({"kind": "flat-arch", "friction": 0.8})
+    left, crown, right = (flat.assembly.joints[at] for at in (0, 4, 9))
+    a, b, c = left.inner, crown.outer, right.inner
+    falls = math.dist(a, b) + math.dist(b, c) - math.dist(a, c)
+    assert bracket(flat, over="spread", method="limit").limit == pytest.approx(falls, rel=1e-6)
+    for share in (0.9, 0.9999):
+        assert check(spread_by(flat, share * falls)).verdict is Verdict.STANDS
+    for share in (1.0001, 1.001, 1.3, 2.0):
+        answer = check(spread_by(flat, share * falls))
+        assert answer.verdict is Verdict.COLLAPSES
+        assert answer.proved
+
+
+def test_an_answer_on_supports_that_moved_says_what_acted_then() -> None:
+    done = inside("bracket", "flat-arch", "--mu", "0.8", "--spread", "0.01", "--over", "tilt")
+    assert "supports moved by 0.01 m, before any push and under all else" in done.stdout

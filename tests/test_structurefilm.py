@@ -11,6 +11,7 @@ import pytest
 from recorded import drawn_words, recorded
 from structure_cases import scenes
 
+import blocksim
 from blocksim import JointState, Problem, Recording, structure_of
 from blocksim.view.canvas import colour, stone_tones
 from blocksim.view.film import Film
@@ -180,10 +181,18 @@ def test_what_slides_far_is_seen_to_lie_on_its_support() -> None:
 
 
 @pytest.mark.parametrize(("tilt", "way"), [(25.0, 1), (-25.0, -1), (0.0, 0)])
-def test_where_gravity_pulls_is_shown_on_a_tilted_table(tilt: float, way: int) -> None:
+@pytest.mark.parametrize("view", ["2d", "3d", "space"])
+def test_where_gravity_pulls_is_shown_on_a_tilted_table(
+    view: str, tilt: float, way: int
+) -> None:
     """An arrow down and towards the side that goes down, by its pixels beyond the words."""
     run = lifted(yard().tilted(math.radians(tilt)))
-    film = Film([run], height=720)
+    if view == "space":
+        tower = blocksim.Tower(blocks=3, friction=0.7).problem().tilted(math.radians(tilt))
+        poses = np.zeros((len(run.times), 3, 6))
+        poses[..., :3] = tower.assembly.centres / tower.assembly.size
+        run = replace(run, problem=tower, poses=poses)
+    film = Film([run], height=720, view="2d" if view == "2d" else "3d")
     assert ("gravity" in drawn_words(film)) is bool(way)
     corner = film.frame(0)[74:150, -110:-20, :3].astype(int)
     quiet = np.array(to_bytes(QUIET))
@@ -192,7 +201,10 @@ def test_where_gravity_pulls_is_shown_on_a_tilted_table(tilt: float, way: int) -
         assert not len(rows)
         return
     slope = np.polyfit(rows, columns, 1)[0]
-    assert slope == pytest.approx(way * math.tan(math.radians(25)), abs=0.08)
+    across, down = math.sin(math.radians(25)), math.cos(math.radians(25))
+    if view != "2d":  # from 30 deg aside, and 22 deg above
+        across, down = across * math.cos(math.radians(30)), down * math.cos(math.radians(22))
+    assert slope == pytest.approx(way * across / down, abs=0.08)
     # The head is wider than the shaft, and below.
     widths = [np.ptp(columns[rows == row]) for row in (rows.min() + 8, rows.max() - 6)]
     assert widths[1] > widths[0] + 3

@@ -5,7 +5,11 @@ from __future__ import annotations
 import json
 import math
 import runpy
+import subprocess
+import sys
 from pathlib import Path
+from token import NAME, NUMBER, OP
+from tokenize import generate_tokens
 from typing import Any
 
 import numpy as np
@@ -14,6 +18,7 @@ from own_balance import SIDES, by_contact_forces, by_pyramids
 from running import inside
 from scipy.integrate import quad
 from scipy.spatial import Delaunay
+from scipy.spatial.transform import Rotation
 from shapely.geometry import Polygon
 
 from blocksim import check, structure_of
@@ -23,6 +28,7 @@ from blocksim.suite.scene import acting, bodies_of
 from blocksim.suite.timed import Motion
 
 G = 9.81
+ENGINES = Path(__file__).parent.parent / "docs" / "examples" / "engines"
 STANDING = {name: each for name, each in questions().items() if isinstance(each, Question)}
 MOVING = {name: each for name, each in questions().items() if isinstance(each, Motion)}
 NEAREST = [each for each in STANDING.values() if each.level == LEVELS[-1]]
@@ -220,8 +226,7 @@ def test_what_falls_has_left_by_its_end(asked: Question) -> None:
 
 
 def test_own_methods_say_the_same_through_files(tmp_path: Path) -> None:
-    folder = Path(__file__).parent.parent / "docs" / "examples" / "engines"
-    adapter = runpy.run_path(str(folder / "blocksim_engines.py"))
+    adapter = runpy.run_path(str(ENGINES / "blocksim_engines.py"))
     (tmp_path / "scenes").mkdir()
     asked = [each for each in NEAREST if each.group in {"toppling", "towers"}]
     for each in asked:
@@ -241,6 +246,23 @@ def test_own_methods_say_the_same_through_files(tmp_path: Path) -> None:
         for line in lines:
             usual = check(problems[line["scene"]], method=method).verdict.value
             assert line["verdict"] == adapter["SAYS"][usual]
+
+
+def test_a_stranger_takes_part_by_files(tmp_path: Path) -> None:
+    """By penalty springs in 60 lines of numpy, comments and docstrings not counted."""
+    folder, answers = tmp_path / "suite", tmp_path / "answers.jsonl"
+    asked = ("--level", "20", "--group", "sliding")
+    assert inside("suite", "export", str(folder), *asked).returncode == 0
+    for path in (folder / "scenes").iterdir():
+        if not path.name.startswith("incline"):
+            path.unlink()
+    script = ENGINES / "penalty.py"
+    with script.open() as file:
+        tokens = list(generate_tokens(file.readline))
+    assert len({each.start[0] for each in tokens if each.type in {NAME, NUMBER, OP}}) <= 60
+    subprocess.run([sys.executable, script, folder / "scenes", answers], check=True)
+    found = json.loads(inside("suite", "score", str(answers), "--json").stdout)
+    assert found["groups"]["sliding"]["levels"]["20"] == [2, 0, 6]
 
 
 def test_what_slides_keeps_its_energy_but_for_friction() -> None:
@@ -288,6 +310,7 @@ def test_boxes_that_meet_keep_their_momentum() -> None:
     first, last = asked.poses[0], asked.poses[-1]
     way = mass @ (last - first)[:, 0]
     speed = asked.scene.moving[0].velocity
+    assert speed is not None
     assert way == pytest.approx(mass[0] * speed[0] * asked.scene.times[-1])
 
 
@@ -408,6 +431,15 @@ def test_a_replay_has_the_poses_that_were_said(name: str, tmp_path: Path) -> Non
     recording, table = str(tmp_path / "run.npz"), tmp_path / "run.json"
     done = inside("suite", "replay", path, name, "--out", recording)
     assert done.returncode == 0, done.stderr
+    arms = np.concatenate(
+        [corner - body.centre for body in scene.moving for corner in body.shapes]
+    )
+    owner = np.repeat(range(count), [sum(map(len, body.shapes)) for body in scene.moving])
+    turned = Rotation.from_rotvec((angle[-1, 0, 0] * axis) if len(axis) == 3 else [0, 0, 3.0])
+    level = np.zeros((len(arms), 3))
+    level[:, : scene.dimensions] = arms
+    shift = turned.apply(level)[:, : scene.dimensions] - arms + moved[-1, owner]
+    assert f"a corner has moved {np.linalg.norm(shift, axis=1).max():.3g} m" in done.stdout
     done = inside("render", recording, "--out", str(table))
     assert done.returncode == 0, done.stderr
     found = json.loads(table.read_text())

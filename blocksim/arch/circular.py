@@ -108,6 +108,14 @@ class Arch(Shown):
         """Radius of the distributed weight over the mean radius: 1, or 1 + eta^2/12."""
         return centroid_factor(self.eta, self.weight)
 
+    @property
+    def voussoir_centres(self) -> Array:
+        """Centres of mass of the voussoirs about that of the arch, shape (n, 2), r = 1."""
+        angles, half = self.joint_angles, self.half_angle / self.voussoirs
+        middle = (angles[:-1] + angles[1:]) / 2
+        arm = self.centroid_factor * math.sin(half) / half
+        return arm * np.column_stack([np.sin(middle), np.cos(middle)])
+
     def assembly(self) -> Assembly:
         """Build the voussoirs and their joints, both springings fixed.
 
@@ -127,15 +135,13 @@ class Arch(Shown):
         rays = np.column_stack([np.sin(angles), np.cos(angles)])
         inner, outer = intrados * rays, extrados * rays
         half = self.half_angle / self.voussoirs
-        arm = self.radius * self.centroid_factor * math.sin(half) / half
         mass = self.voussoir_weight / GRAVITY
         # Polar moment of the sector about the centre of the arch, 1 + eta^2/4, less the
         # parallel-axis term, with 1 - (sin x/x)^2 kept apart: it is x^2/3 for small x.
         factor = centroid_factor(self.eta, "sector")
         thick = 1.0 + self.eta**2 / 4 - factor**2
         inertia = mass * self.radius**2 * (thick + factor**2 * _sine_deficit(half))
-        middle = (angles[:-1] + angles[1:]) / 2
-        centres = arm * np.column_stack([np.sin(middle), np.cos(middle)])
+        centres = self.radius * self.voussoir_centres
         corners = np.stack([inner[:-1], inner[1:], outer[1:], outer[:-1]], axis=1)
         if intrados == 0:
             corners = corners[:, 1:]

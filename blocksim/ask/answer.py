@@ -12,12 +12,11 @@ from blocksim.blocks.assembly import Array, Blocks
 from blocksim.blocks.joints import ObservedJoint
 from blocksim.blocks.problem import Problem
 from blocksim.common.shown import Shown
-from blocksim.kinds.offers import carried_of, offers_of
-from blocksim.limit import Equilibrium, equilibrium
+from blocksim.kinds.offers import Offers, carried_of, offers_of
+from blocksim.limit import Equilibrium, Resultants, equilibrium
 from blocksim.limit.carried import Carried
 from blocksim.limit.crushing import Needed
 from blocksim.limit.exact import Exact
-from blocksim.limit.proof import proof_of_rest
 from blocksim.simulation.verdict import Evidence, Verdict, reason_of
 
 if TYPE_CHECKING:
@@ -136,6 +135,11 @@ class Check(Shown, Generic[Blocks]):
         return equilibrium(self.problem) if self.problem.has_statics else None
 
     @cached_property
+    def offers(self) -> Offers | None:
+        """What the maker knows of the problem; None where nothing."""
+        return offers_of(self.problem)
+
+    @cached_property
     def proof(self) -> Proof | None:
         """The proof of the verdict by limit analysis; None where undecided, and in space."""
         if self.method != "limit" or self.problem.in_space:
@@ -143,12 +147,9 @@ class Check(Shown, Generic[Blocks]):
         if self.needed is not None:
             # Proofs are of rigid blocks, which stand.
             return None
-        found = None
-        offers = offers_of(self.problem)
-        if self.verdict is Verdict.STANDS and offers is not None:
-            # The maker's own statics know forces: no linear programme has to be loaded.
-            forces, problem = offers.forces(), cast("Problem", self.problem)
-            found = None if forces is None else proof_of_rest(Exact(problem), forces)
+        # Where the maker's own statics tell, no general programme has to be solved.
+        offers = self.offers
+        found = None if offers is None else offers.proof(Exact(cast("Problem", self.problem)))
         if found is None and self.static is not None:
             found = self.static.proof
         return found if found is not None and found.claim == self.verdict.value else None
@@ -166,6 +167,12 @@ class Check(Shown, Generic[Blocks]):
         normals and across, (joints, 3) [N]. None where there are none.
         """
         return None if self.static is None else self.static.forces
+
+    @property
+    def resultants(self) -> Resultants | None:
+        """What each joint carries, in the plane in the safest state; None where it falls."""
+        held: Any = self.static if self.problem.in_space else self.carried
+        return None if held is None else held.resultants
 
     @cached_property
     def mechanism(self) -> Array | None:
@@ -193,7 +200,7 @@ class Check(Shown, Generic[Blocks]):
 
     def carried_at(self, joint: int | None) -> Carried | None:
         """Return the same as `carried`, with the thrust at a joint; None is the crown."""
-        small = offers_of(self.problem) or len(self.problem.assembly.joints) <= SOUGHT
+        small = self.offers or len(self.problem.assembly.joints) <= SOUGHT
         return carried_of(self.problem, joint, self.needed) if small else None
 
     def __repr__(self) -> str:

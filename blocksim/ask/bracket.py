@@ -189,13 +189,14 @@ def _answer(found: Found, given: Taken, started: float) -> Bracket[Any]:
     search, chosen = found.search, found.chosen
     settings = aside("settings", given_words(given.settings))
     method = aside("method", chosen_words(given.method, chosen))
+    notes = tuple(Evidence("note", each) for each in found.told["problem"].notes)
     return Bracket(
         method=chosen.name,
         tol=given.tol,
         confirmed=search.confirmed,
         runs=search.runs,
         undecided=search.undecided,
-        evidence=found.evidence + settings + method,
+        evidence=found.evidence + settings + method + notes,
         blocks=search.blocks,
         splits=search.splits,
         wall_s=time.perf_counter() - started,

@@ -15,6 +15,7 @@ from blocksim.ask.undecided import closing_of_verdict, undecided_words
 from blocksim.blocks.assembly import Blocks
 from blocksim.blocks.joints import closed_joints
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.road import bears_road
 from blocksim.common.progress import Progress
 from blocksim.engines import get_engine
 from blocksim.kinds.offers import Offers, offers_of
@@ -76,13 +77,15 @@ def check(
     answer = found.answer
     words = aside("method", chosen_words(given.method, chosen))
     notes = tuple(Evidence("note", note) for note in answer.problem.notes)
+    if problem.shaking is not None and bears_road(problem):
+        notes += (Evidence("note", "fill and loads on the road have no mass that would shake"),)
     answer = replace(answer, evidence=(*answer.evidence, *words, *notes))
     if not problem.is_moving:
         answer = _with_rest(answer, found, given.progress, must_rest=must_rest)
     answer = replace(answer, wall_s=time.perf_counter() - started)
-    if found.static is not None:
-        # Asked for already.
-        vars(answer)["static"] = found.static
+    # Asked for already.
+    known = {"static": found.static, "offers": found.offers}
+    vars(answer).update({name: each for name, each in known.items() if each is not None})
     return _as_proved(answer)
 
 
@@ -114,12 +117,13 @@ def _as_proved(answer: Check[Any]) -> Check[Any]:
 
 
 class _Found(NamedTuple):
-    """An answer, and what tells of rest: forces of equilibrium, a motion that was seen."""
+    """An answer, what tells of rest (forces, a motion that was seen), and what is known."""
 
     answer: Check[Any]
     exists: bool | None
     moved: bool
     static: Equilibrium | SpatialEquilibrium | None = None
+    offers: Offers | None = None
 
 
 def _offered(problem: Problem, offered: Offers, chosen: Method, given: Taken) -> _Found:
@@ -134,7 +138,7 @@ def _offered(problem: Problem, offered: Offers, chosen: Method, given: Taken) ->
             joints=static.joints,
             arch=offered.facts(mode=static.mode),
         )
-        return _Found(answer, offered.stands, moved=False)
+        return _Found(answer, offered.stands, moved=False, offers=offered)
     answer, seen = _simulated(problem, offered, chosen, given)
     facts = offered.facts(
         mode=offered.mode(seen.joints), mode_in_motion=offered.mode(seen.joints_in_motion)

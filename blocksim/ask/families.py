@@ -14,6 +14,7 @@ from blocksim.ask.scan import TRIED, Scan, least_friction, standing_at
 from blocksim.blocks.assembly import Blocks
 from blocksim.blocks.maker import Kind
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.road import require_upright
 from blocksim.blocks.shaking import AMPLITUDE, DURATION
 from blocksim.common.checks import PUSH
 from blocksim.common.errors import InputError
@@ -155,6 +156,8 @@ def _over_load(problem: Problem[Any]) -> Family[Any]:
 
 
 def _over_tilt(problem: Problem[Any]) -> Family[Any]:
+    require_upright(problem, "--over", "tilt")
+
     def standing() -> tuple[Interval, ...]:
         if problem.strength is not None:
             # Of blocks that crush, tilts are tried, as parameters of a kind are.
@@ -177,6 +180,7 @@ def _over_tilt(problem: Problem[Any]) -> Family[Any]:
 
 
 def _over_lean(problem: Problem) -> Family:
+    require_upright(problem, "--over", "lean")
     return Family(
         problem=problem,
         name="lean",
@@ -221,7 +225,7 @@ def _over_spread(problem: Problem) -> Family:
 
 def _over_push(problem: Problem) -> Family:
     # It follows blocks that move.
-    from blocksim.ask.push import asked, borne, borne_words, worse
+    from blocksim.ask.push import asked, borne, borne_words, without_mass, worse
 
     both = borne(problem)
     given, said = asked(problem, worse(both)), borne_words(both)
@@ -232,7 +236,7 @@ def _over_push(problem: Problem) -> Family:
         at=given.with_load,
         high=PUSH.high,
         standing=lambda: over_factor(given),
-        remark=lambda: f"; {said}",
+        remark=lambda: f"; {said}{without_mass(problem)}",
     )
 
 

@@ -17,8 +17,10 @@ from blocksim.limit.margins import crown, thrust_range
 def spread_by(problem: Problem, value: float) -> Problem:
     """Return a problem as it lies where its supports have moved so far [m].
 
-    A note says what happened on the way, and how much farther they can move. Where blocks fall
-    before that it is the problem as it lies where they have gone on falling so far.
+    They move under all that acts. A note says what happened on the way, and how much farther
+    they can move. Where blocks fall for good before that it is the problem as it begins to.
+
+    Raises `InputError`: If what moves is not said, or it is not followed so far.
     """
     spreading = Spreading(problem)
     try:
@@ -29,7 +31,7 @@ def spread_by(problem: Problem, value: float) -> Problem:
         allowed = "left out, or `move` in the file: which of its supports moves has to be said"
         raise InputError("spread", value, allowed) from None
     path, exact = spreading.path, spreading.exact
-    followed = exact is not None or value <= path.value
+    followed = value <= path.value or path.falls_for_good
     require(followed, "spread", value, f"at most {path.value:.6g} m: farther is not followed")
     require(value <= spreading.farthest, "spread", value, f"at most {spreading.farthest:.6g} m")
     said = [event_words(each) for each in spreading.events if each.value <= value]
@@ -39,7 +41,9 @@ def spread_by(problem: Problem, value: float) -> Problem:
     elif math.isfinite(left):
         said.append(f"it {'falls' if left >= 0 else 'fell'} at {exact:.6g} m")
     lies = spreading.at(value)
-    note = f"supports moved by {value:g} m: {'; '.join(said)}"
+    note = (
+        f"supports moved by {value:g} m, before any push and under all else: {'; '.join(said)}"
+    )
     return replace(lies, moves=(), notes=(*lies.notes, note))
 
 

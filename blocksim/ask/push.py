@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from blocksim.blocks.acting import Load
+from blocksim.blocks.acting import push_on_all
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.road import bears_road
 from blocksim.common.checks import PUSH, require
 from blocksim.limit.capacity import collapse
 from blocksim.limit.displaced import Displaced
@@ -39,12 +40,6 @@ class Curve:
     ends: str
 
 
-def across(problem: Problem, share: float) -> Load:
-    """Return a push on all blocks, to the right, by a share of the weight of each."""
-    blocks = tuple(range(len(problem.assembly.blocks)))
-    return Load(force=np.array([share, 0.0]), blocks=blocks, per_weight=True)
-
-
 def asked(problem: Problem, way: str) -> Problem:
     """Return a problem of which the live load is a push by the weight of each block.
 
@@ -54,7 +49,7 @@ def asked(problem: Problem, way: str) -> Problem:
     return replace(
         problem,
         dead=(*problem.dead, *(live if problem.load else ())),
-        live=(across(problem, WAYS[way]),),
+        live=(push_on_all(problem, [WAYS[way], 0.0]),),
         load=1.0,
         road=(),
     )
@@ -83,6 +78,11 @@ def borne_words(both: Mapping[str, float]) -> str:
     return f"it bears {said}"
 
 
+def without_mass(problem: Problem) -> str:
+    """Say what lies on it and is not pushed."""
+    return "; fill and loads on the road are not pushed" if bears_road(problem) else ""
+
+
 def pushed(problem: Problem, share: float) -> Problem:
     """Return a problem that is pushed sideways by a share of the weight of each block.
 
@@ -94,8 +94,8 @@ def pushed(problem: Problem, share: float) -> Problem:
     PUSH.require("push", share)
     both = borne(problem)
     worst = worse(both)
-    note = f"pushed by {share:g} g to the {worst}: {borne_words(both)}"
-    dead = (*problem.dead, across(problem, WAYS[worst] * share))
+    note = f"pushed by {share:g} g to the {worst}: {borne_words(both)}{without_mass(problem)}"
+    dead = (*problem.dead, push_on_all(problem, [WAYS[worst] * share, 0.0]))
     return replace(problem, dead=dead, notes=(*problem.notes, note))
 
 

@@ -74,7 +74,7 @@ class Spreading:
         asked = self.asked
         if not asked.moves and isinstance(asked.maker, CircularArch) and asked.maker.in_radii:
             # On two planes; what moves are supports that are drawn.
-            asked = remade(asked, asked.maker.between_supports())
+            asked = remade(asked, asked.maker.but(on_supports=True))
         supports = asked.assembly.supports
         allowed = "left out where supports move: blocks are rigid there"
         require(not bears(asked), "fill_passive", "given", "left out where supports move")

@@ -10,6 +10,7 @@ import numpy as np
 
 from blocksim.blocks.closing import closed_gaps, resized
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.road import bears_road
 from blocksim.blocks.rows import column
 from blocksim.limit import equilibrium
 from blocksim.limit.statics import exists
@@ -43,7 +44,8 @@ def _changes(problem: Problem, by: float) -> Iterator[tuple[str, Problem]]:
     for sign, more in ((1, "more"), (-1, "less")):
         if np.isfinite(problem.friction).any():
             yield f"{by:g} {more} of the friction", _rubbed(problem, 1 + sign * by)
-        yield f"gravity turned by {sign * by:+g} rad", problem.tilted(sign * by)
+        if not bears_road(problem):
+            yield f"gravity turned by {sign * by:+g} rad", problem.tilted(sign * by)
         if problem.live:
             loaded = problem.with_load(problem.load * (1 + sign * by))
             yield f"{by:g} {more} of the live loads", loaded

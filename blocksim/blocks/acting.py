@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -44,6 +45,12 @@ class Load:
         if self.point is not None:
             object.__setattr__(self, "point", frozen(self.point, (dimensions,)))
             require_all(COORDINATE, "point", self.point)
+
+
+def push_on_all(problem: Problem[Any], force: Sequence[float] | Array) -> Load:
+    """Return a push on all blocks, x and y, in space also z, over the weight of each."""
+    blocks = tuple(range(len(problem.assembly.blocks)))
+    return Load(force=np.array(force, dtype=float), blocks=blocks, per_weight=True)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Sized
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
         SpatialLoadEntry,
     )
 
+Block = TypeVar("Block", bound="BlockEntry | SolidEntry")
+Between = TypeVar("Between", bound="JointEntry | FaceEntry")
 FORMS = ("body", "block", "patch")
 """What a load acts on: blocks by their weight, one block, or what lies uppermost."""
 
@@ -42,38 +44,40 @@ class Names:
         return self._index[str(name)]
 
 
-def name_of(
-    block: BlockEntry | SolidEntry, field: str, known: set[str], parts: Sized | None, key: str
-) -> str:
-    """Return the name of a block, which no other has and which has one outline.
+def named_blocks(
+    blocks: Iterable[Block], key: Literal["polygons", "polyhedra"]
+) -> Iterator[tuple[Block, str, tuple[Any, ...]]]:
+    """Give each block of a file with its name, which no other has, and its parts.
 
-    `field`: Where it stands.
-    `known`: Names so far; this one is added.
-    `parts`: What it consists of where it has no `vertices`, under its key.
+    `key`: Of the parts it consists of where it has no `vertices`.
     """
-    name = str(block.id)
-    require(name not in known, f"{field}.id", block.id, "an id that no other block has")
-    known.add(name)
-    if block.vertices is None and parts is None:
-        raise InputError(f"{field}.vertices", MISSING, "given")
-    if block.vertices is not None and parts is not None:
-        beside = f"{len(parts)} beside vertices"
-        raise InputError(f"{field}.{key}", beside, "left out, or vertices")
-    return name
+    known = set[str]()
+    for at, block in enumerate(blocks):
+        name, parts, field = str(block.id), getattr(block, key), f"blocks[{at}]"
+        require(name not in known, f"{field}.id", block.id, "an id that no other block has")
+        known.add(name)
+        if block.vertices is None and parts is None:
+            raise InputError(f"{field}.vertices", MISSING, "given")
+        if block.vertices is not None and parts is not None:
+            beside = f"{len(parts)} beside vertices"
+            raise InputError(f"{field}.{key}", beside, "left out, or vertices")
+        yield block, name, tuple(parts or [block.vertices])
 
 
-def sides_of(
-    joint: JointEntry | FaceEntry,
-    field: str,
-    bodies: Sequence[Body] | Sequence[Solid],
-    body_of: Names,
-) -> tuple[int, int]:
-    """Return the places of the two bodies of a joint, one of which moves."""
-    a, b = body_of(joint.a, f"{field}.a"), body_of(joint.b, f"{field}.b")
-    require(a != b, f"{field}.b", joint.b, "another block than a")
-    both = bodies[a].fixed and bodies[b].fixed
-    require(not both, field, "two fixed blocks", "left out")
-    return a, b
+def given_joints(
+    joints: Iterable[Between], bodies: Sequence[Body] | Sequence[Solid], tolerance: float | None
+) -> Iterator[tuple[Between, int, int]]:
+    """Give each joint of a file with the places of its two bodies, one of which moves."""
+    allowed = "left out: joints are given, none is found"
+    require(tolerance is None, "tolerance", tolerance, allowed)
+    body_of = Names(bodies)
+    for at, joint in enumerate(joints):
+        field = f"joints[{at}]"
+        a, b = body_of(joint.a, f"{field}.a"), body_of(joint.b, f"{field}.b")
+        require(a != b, f"{field}.b", joint.b, "another block than a")
+        both = bodies[a].fixed and bodies[b].fixed
+        require(not both, field, "two fixed blocks", "left out")
+        yield joint, a, b
 
 
 class LoadsOf:

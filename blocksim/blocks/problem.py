@@ -14,7 +14,7 @@ from blocksim.blocks.acting import Move as Move
 from blocksim.blocks.assembly import STANDARD_GRAVITY as STANDARD_GRAVITY
 from blocksim.blocks.assembly import Array, Blocks, frozen
 from blocksim.blocks.dispersal import Dispersal
-from blocksim.blocks.road import remade
+from blocksim.blocks.road import remade, require_upright
 from blocksim.blocks.shaking import Shaking
 from blocksim.blocks.soil import Soil
 from blocksim.common.checks import (
@@ -246,8 +246,8 @@ class Problem(Shown, Generic[Blocks]):
         In the plane its right-hand side goes down, in space the side at the azimuth. The
         blocks are seen as before: it is gravity that turns.
         """
-        finite = is_number(tilt, -math.inf, math.inf) and math.isfinite(tilt)
-        require(finite, "tilt", tilt, "a finite angle")
+        require(is_number(tilt, -1e9, 1e9), "tilt", tilt, "an angle up to 1e9 rad")
+        require_upright(self, "tilt", tilt)
         still, cos, sin = self.unturned, math.cos(tilt), math.sin(tilt)
         return replace(self, gravity=still + cos * (self.gravity - still) + sin * self.across)
 
@@ -255,6 +255,7 @@ class Problem(Shown, Generic[Blocks]):
         """Return the same with gravity out of the plane by an angle [rad], not as it was."""
         LEAN.require("lean", lean)
         require(not self.in_space, "lean", lean, "left out in space: tilt towards an azimuth")
+        require_upright(self, "lean", lean)
         strength, level = math.hypot(*self.gravity), math.hypot(*self.gravity[:2])
         leaning = [*self.gravity[:2] / level * math.cos(lean), math.sin(lean)]
         return replace(self, gravity=strength * np.array(leaning))

@@ -20,7 +20,7 @@ from blocksim.blocks.shaking import Shaking, table_of
 from blocksim.blocks.soil import Soil
 from blocksim.blocks.space.assembly import FaceJoint, SolidBlock, SpatialAssembly
 from blocksim.blocks.space.polyhedron import Polyhedron
-from blocksim.common.checks import COORDINATE, SMOOTH_OR_ROUGH
+from blocksim.common.checks import COORDINATE, SMOOTH_OR_ROUGH, endless_text, infinite
 
 if TYPE_CHECKING:
     from blocksim.blocks.maker import Kind
@@ -47,9 +47,7 @@ def to_record(value: object) -> Any:
         return {key: to_record(each) for key, each in named.items()}
     if isinstance(value, Sequence) and not isinstance(value, str):
         return [to_record(each) for each in cast("Sequence[object]", value)]
-    if isinstance(value, float) and math.isinf(value):
-        return "inf"
-    return value
+    return endless_text(value)
 
 
 def _problem(problem: Problem[Any]) -> dict[str, Any]:
@@ -202,7 +200,7 @@ def _tupled(record: Mapping[str, Any], name: str) -> dict[str, Any]:
 
 
 def _numbers(record: Mapping[str, Any]) -> dict[str, Any]:
-    return {key: math.inf if value == "inf" else value for key, value in record.items()}
+    return {key: infinite(value) for key, value in record.items()}
 
 
 def _is_place(value: object, count: int, least: int = 0) -> bool:

@@ -7,6 +7,7 @@ and how it presses from the side is in `blocks.soil`.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, cast
@@ -186,6 +187,21 @@ def with_soil(problem: Problem, soil: Soil | None) -> Problem:
 def _fills(problem: Problem) -> int:
     """Return how many loads are the weight of fill that a maker knows: the first ones."""
     return 0 if problem.maker is None else len(problem.maker.built.fills)
+
+
+def bears_road(problem: Problem[Any]) -> bool:
+    """Tell whether fill or loads on a road lie on it: weights that no mass stands for."""
+    return bool(problem.road or problem.soil or _fills(cast("Problem", problem)))
+
+
+def require_upright(problem: Problem[Any], name: str, turn: float | str) -> None:
+    """Refuse to turn gravity under fill or loads on a road: they would not turn with it.
+
+    `turn`: Angle [rad], or what is given in its place.
+    """
+    allowed = "left out under fill or loads on a road, which are borne by what stands upright"
+    said = turn if isinstance(turn, str) else f"{math.degrees(turn):.6g} deg"
+    require(not turn or not bears_road(problem), name, said, allowed)
 
 
 def fill_loads(problem: Problem) -> int:

@@ -15,7 +15,7 @@ import numpy as np
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
 from blocksim.blocks.entries import Around, StructureFile
 from blocksim.blocks.given import GivenJoint
-from blocksim.blocks.loads import LoadsOf, Names, acting_of, name_of, sides_of
+from blocksim.blocks.loads import LoadsOf, Names, acting_of, given_joints, named_blocks
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Move, Problem
@@ -42,14 +42,9 @@ def structure_of(data: object) -> Problem:
     require(isinstance(data, dict), "structure", type(data).__name__, "a table of keys")
     written = as_said(StructureFile, data)
     bodies = _bodies(written)
-    joints = _joints(written, bodies)
-    allowed = "left out: joints are given, none is found"
-    require(
-        joints is None or written.tolerance is None, "tolerance", written.tolerance, allowed
-    )
     found = assembly_of_bodies(
         bodies,
-        joints=joints,
+        joints=_joints(written, bodies),
         density=written.unit_weight,
         size=written.size,
         tolerance=written.tolerance,
@@ -75,43 +70,35 @@ def _velocities(written: StructureFile) -> Array:
 
 
 def _bodies(written: StructureFile) -> list[Body]:
-    index = set[str]()
-    bodies: list[Body] = []
-    for at, block in enumerate(written.blocks):
-        name = name_of(block, f"blocks[{at}]", index, block.polygons, "polygons")
-        bodies.append(
-            Body(
-                polygons=tuple(block.polygons or [block.vertices or []]),
-                name=name,
-                fixed=block.fixed,
-                weight=block.weight,
-                centre=block.centre,
-                inertia=block.inertia,
-                depth=block.depth,
-                free=block.free,
-            )
+    return [
+        Body(
+            polygons=parts,
+            name=name,
+            fixed=block.fixed,
+            weight=block.weight,
+            centre=block.centre,
+            inertia=block.inertia,
+            depth=block.depth,
+            free=block.free,
         )
-    return bodies
+        for block, name, parts in named_blocks(written.blocks, "polygons")
+    ]
 
 
 def _joints(written: StructureFile, bodies: Sequence[Body]) -> list[GivenJoint] | None:
     if written.joints is None:
         return None
-    body_of = Names(bodies)
-    joints: list[GivenJoint] = []
-    for at, joint in enumerate(written.joints):
-        a, b = sides_of(joint, f"joints[{at}]", bodies, body_of)
-        joints.append(
-            GivenJoint(
-                a=a,
-                b=b,
-                ends=np.array(joint.ends, dtype=float),
-                normal=None if joint.normal is None else np.array(joint.normal, dtype=float),
-                friction=joint.friction,
-                faces=None if joint.faces is None else np.array(joint.faces, dtype=float),
-            )
+    return [
+        GivenJoint(
+            a=a,
+            b=b,
+            ends=np.array(joint.ends, dtype=float),
+            normal=None if joint.normal is None else np.array(joint.normal, dtype=float),
+            friction=joint.friction,
+            faces=None if joint.faces is None else np.array(joint.faces, dtype=float),
         )
-    return joints
+        for joint, a, b in given_joints(written.joints, bodies, written.tolerance)
+    ]
 
 
 def problem_of(

@@ -98,7 +98,7 @@ class Loading:
         "Tilt of the table in the plane, in degrees: its right side goes down.", range=TILT_DEG
     )
     azimuth: float | None = option(
-        "Of blocks in space: towards where the table tilts, in degrees from x "
+        "Beside --tilt, of blocks in space: towards where, in degrees from x "
         "towards y; 0 if left out.",
         range=TILT_DEG,
     )

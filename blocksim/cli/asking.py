@@ -144,8 +144,9 @@ def bracket(
     if sought:
         refuse({"eta": given.eta, "ratio": given.ratio}, why="left out: the least is sought")
     problem = anything_asked(
-        scene, given, loading, spatial=spatial, thick=not sought, sought=sought
-    )
+        scene, given, loading, spatial=spatial, tilts=over == "tilt", thick=not sought,
+        sought=sought,
+    )  # fmt: skip
     if problem.in_space:
         refuse({**asdict(crossed), "proof": proof})
     elif crosses:

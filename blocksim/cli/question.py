@@ -57,7 +57,7 @@ def arch_of(given: Given, *, thick: bool = False, **needed: object) -> CircularA
 def arch_asked(
     given: Given, *, thick: bool = False, sought: bool = False, **needed: object
 ) -> Problem:
-    """Return the arch that options describe, under its own weight.
+    """Return the arch that options describe, under its own weight, upright.
 
     `thick`, `needed`: As of `arch_of`.
     `sought`: Whether its thickness is what is sought.
@@ -68,9 +68,7 @@ def arch_asked(
     if not is_thick(given):
         note = f"no thickness was given, so it is {ASIDE:g} of the least as built"
         problem = replace(problem, notes=(note,))
-    with named_options():
-        lean = given.lean
-        return problem if lean is None else problem.leaning(math.radians(lean))
+    return problem
 
 
 def _require_degrees(alpha: float | None) -> None:

@@ -16,6 +16,7 @@ from blocksim.suite.answers import read_answers, recording_of
 from blocksim.suite.export import chosen, questions
 from blocksim.suite.export import export as export_scenes
 from blocksim.suite.families import Question
+from blocksim.suite.scene import Bodies
 from blocksim.suite.score import scored, worse
 
 
@@ -74,10 +75,13 @@ def replay(
     question = asked[scene]
     if not isinstance(question, Question):
         raise InputError("SCENE", scene, "a scene that asks whether blocks stand")
-    recording = recording_of(head, said[scene], question)
-    recording.save(out)
+    poses = said[scene].poses
+    if poses is None:
+        allowed = "a scene answered by poses: a verdict alone shows no motion"
+        raise InputError("scene", scene, allowed)
+    recording_of(head, poses, question).save(out)
     truth = "stands" if question.stands else "falls"
-    way = float(recording.displacement[-1]) * recording.assembly.size
+    way = float(Bodies(question.scene).ways(poses[-1]).max())
     say(
         f"wrote {out}: {scene} {truth}; by {head.engine} a corner has moved {way:.3g} m at the "
         f"end, {question.scene.bound:.3g} m count as standing"

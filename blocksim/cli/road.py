@@ -146,7 +146,7 @@ def under_road(problem: Problem, loading: Loading) -> Problem:
     """Put fill and loads on a structure; live loads act as they are, with a factor of 1."""
     if isinstance(problem.maker, CircularArch) and problem.maker.in_radii:
         # They are borne by supports that are drawn.
-        maker = problem.maker.between_supports()
+        maker = problem.maker.but(on_supports=True)
         problem = replace(remade(problem, maker), title=problem.title or maker.name)
     blocks = problem.assembly.blocks
     volume = sum(abs(signed_area(part)) * b.depth for b in blocks for part in b.polygons)

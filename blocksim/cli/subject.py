@@ -46,6 +46,7 @@ def anything_asked(
     loading: Loading,
     *,
     spatial: bool = False,
+    tilts: bool = False,
     thick: bool = False,
     sought: bool = False,
     **needed: object,
@@ -55,24 +56,27 @@ def anything_asked(
     `scene`: A file, a shipped name or a kind; None for the circular arch by its options.
     `given`, `thick`, `sought`, `needed`: As of `arch_asked`.
     `spatial`: Whether blocks of the plane are asked as prisms.
+    `tilts`: Whether the question tilts them.
     """
     if scene is None:
         found = arch_asked(given, thick=thick, sought=sought, **needed)
-        if loading.given:
+        if loading.given or given.lean is not None:
             from blocksim.cli.road import loaded
 
-            found = loaded(found, Given(), loading)
+            found = loaded(found, Given(lean=given.lean), loading)
     else:
         # An arch by its options is answered sooner than readers of files are loaded.
         from blocksim.cli.structures import structure
 
         require_given(**needed)
         found = structure(scene, given, loading)
-    if found.in_space:
-        return found
-    if not spatial:
-        allowed = "left out: it is of blocks in space"
-        require(loading.azimuth is None, "--azimuth", loading.azimuth, allowed)
+    in_space = found.in_space or spatial
+    turned = in_space and (tilts or loading.tilt is not None)
+    allowed = (
+        "left out, or --tilt beside it" if in_space else "left out: it is of blocks in space"
+    )
+    require(turned or loading.azimuth is None, "--azimuth", loading.azimuth, allowed)
+    if found.in_space or not spatial:
         return found
     from blocksim.blocks.space.extruded import extruded
 

@@ -104,8 +104,8 @@ class Range:
 
 
 def endless_text(written: object) -> object:
-    """Say infinity as the text that files of JSON have."""
-    return "inf" if written == math.inf else written
+    """Say infinity, "inf" or "-inf", as the text that files of JSON have."""
+    return str(written) if isinstance(written, float) and math.isinf(written) else written
 
 
 def infinite(written: object) -> object:

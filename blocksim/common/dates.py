@@ -18,15 +18,18 @@ def is_dated() -> bool:
 
 
 def made_at() -> str:
+    """Return the time of `present` in words."""
+    return present().strftime("%Y-%m-%d %H:%M UTC")
+
+
+def present() -> datetime:
     """Return the present time, or that of SOURCE_DATE_EPOCH, so that pages can be made again.
 
     As https://reproducible-builds.org/specs/source-date-epoch has it.
     """
     given = os.environ.get(VARIABLE)
     if given is None:
-        when = datetime.now(UTC)
-    elif given.isascii() and given.isdigit() and len(given) < 16 and int(given) <= LATEST:
-        when = datetime.fromtimestamp(int(given), UTC)
-    else:
-        raise InputError(VARIABLE, given, "whole seconds since 1970, or unset")
-    return when.strftime("%Y-%m-%d %H:%M UTC")
+        return datetime.now(UTC)
+    if given.isascii() and given.isdigit() and len(given) < 16 and int(given) <= LATEST:
+        return datetime.fromtimestamp(int(given), UTC)
+    raise InputError(VARIABLE, given, "whole seconds since 1970, or unset")

@@ -16,7 +16,7 @@ from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.fields import fields_of
 from blocksim.kinds.archkind import ArchKind
-from blocksim.kinds.blockwork import box, floor, pier
+from blocksim.kinds.blockwork import box, fill_over, floor, head, pier
 from blocksim.kinds.portal import LEVEL, SEMICIRCLE, require_bearing
 
 
@@ -166,8 +166,15 @@ class Arcade(Maker):
             wide = f"{name}, {width:g} m wide"
             require(width >= least, "each_pier", wide, f"{least:.6g} m or wider")
             bodies += pier(name, ends, ends, low, spring, self.pier_courses, self.arch.depth)
-            bodies += _saddle(name, ends, before, after, spring, self.arch)
-            fills += self._over(density, place, ends, before, after, len(bodies) - 1)
+            left = ends[0] + (before[1][0] - before[0][0]), before[1][1]
+            right = ends[1] - (after[0][0] - after[1][0]), after[1][1]
+            near = LEVEL * self.arch.thickness
+            bodies += head(f"{name} saddle", ends, spring, left, right, near, self.arch.depth)
+            if self.road is not None:
+                both = self.arches[place : place + 2]
+                heavy = density * (sum(each.fill_density for each in both) / 2)
+                heavy *= self.arch.depth
+                fills += fill_over(len(bodies) - 1, left, right, self.road, heavy)
         bodies = [*fixed, *bodies]
         fills = [replace(each, body=each.body + len(fixed)) for each in fills]
         for place, arch in enumerate(self.arches):
@@ -181,31 +188,6 @@ class Arcade(Maker):
                 for each in arch.fills(density, begin)
             ]
         return Made(bodies=tuple(bodies), fills=tuple(fills))
-
-    def _over(
-        self,
-        density: float,
-        place: int,
-        ends: tuple[float, float],
-        before: Face,
-        after: Face,
-        body: int,
-    ) -> list[Fill]:
-        """Return the weight of the fill over a pier, between two springings."""
-        road = self.road
-        if road is None:
-            return []
-        edges = ends[0] + before[1][0] - before[0][0], ends[1] - after[0][0] + after[1][0]
-        # The top of a saddle is straight between both springings.
-        deep = road - (before[1][1] + after[1][1]) / 2
-        area = (edges[1] - edges[0]) * deep
-        if area <= 0:
-            return []
-        heavy = (self.arches[place].fill_density + self.arches[place + 1].fill_density) / 2
-        lean = (before[1][1] - after[1][1]) / 2
-        middle = (edges[0] + edges[1]) / 2 + (edges[1] - edges[0]) * lean / (6 * deep)
-        weight = density * heavy * self.arch.depth * area
-        return [Fill(body=body, weight=weight, point=(middle, max(before[1][1], after[1][1])))]
 
 
 Face = list[list[float]]
@@ -227,27 +209,6 @@ def _level_faces(arch: ArchKind, spring: float) -> tuple[Face, Face]:
     if abs(left[0][1] - right[0][1]) > near or abs(left[1][1] - right[1][1]) > near:
         raise InputError("arch", arch.name, "one whose springings are as high")
     return left, right
-
-
-def _saddle(
-    name: str,
-    ends: tuple[float, float],
-    before: Face,
-    after: Face,
-    spring: float,
-    arch: ArchKind,
-) -> list[Body]:
-    """Make the block between the head of a pier and two springings, one at least inclined."""
-    near = LEVEL * arch.thickness
-    if max(before[1][1], after[1][1]) - spring <= near:
-        return []
-    corners = [
-        [ends[0], spring],
-        [ends[1], spring],
-        [ends[1] - (after[0][0] - after[1][0]), after[1][1]],
-        [ends[0] + (before[1][0] - before[0][0]), before[1][1]],
-    ]
-    return [Body(polygons=(np.array(corners),), name=f"{name} saddle", depth=arch.depth)]
 
 
 def _abutment(

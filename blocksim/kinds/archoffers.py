@@ -14,11 +14,12 @@ from blocksim.arch.circular import ETA_MAX, Arch
 from blocksim.arch.limit import LimitState
 from blocksim.arch.modes import Mode, observed_mode
 from blocksim.arch.theory import Critical
-from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.kinds.offers import Offers, Static, Threshold
 from blocksim.limit.carried import Carried
+from blocksim.limit.exact import Exact
+from blocksim.limit.proof import Proof, proof_of_fall, proof_of_rest
 from blocksim.simulation.simulated import Reduced
 from blocksim.simulation.verdict import Evidence, Verdict
 
@@ -58,6 +59,14 @@ class ArchOffers(Offers):
         """The continuous arch at its least thickness."""
         return theory.least_thickness(self.arch.half_angle, self.problem.mu, self.arch.weight)
 
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """With which the voussoirs as built begin to fall."""
+        # Its linear programmes take longer to load than an arch that stands to answer.
+        from blocksim.arch.limit.mechanism import mechanism
+
+        return mechanism(self.arch, self.problem.mu)
+
     @property
     def stands(self) -> bool | None:  # type: ignore[override]
         """Whether forces of equilibrium exist; None where gravity leans."""
@@ -78,11 +87,7 @@ class ArchOffers(Offers):
             friction = "" if math.isinf(self.problem.mu) else " and friction could both"
             said = f"{said}; thickness{friction or ' could'} be {spare:.2%} less"
         else:
-            # Its linear programmes take longer to load than an arch that stands to answer.
-            from blocksim.arch.limit.mechanism import mechanism
-
-            seen = mechanism(arch, self.problem.mu)
-            mode, joints = seen.mode, _limit_joints(seen)
+            mode, joints = self.mechanism.mode, _limit_joints(self.mechanism)
         found = Evidence("limit analysis", said)
         return Static(verdict=verdict, evidence=found, joints=joints, mode=mode)
 
@@ -92,9 +97,19 @@ class ArchOffers(Offers):
             return None
         return carried_by_arch(self.arch, self.problem, joint)
 
-    def forces(self) -> Array | None:
-        """Return forces that are well within the arch; None where gravity leans."""
-        return standing_forces(self.arch, self.problem) if self.problem.is_planar else None
+    def proof(self, exact: Exact) -> Proof | None:
+        """Prove it by forces well within the arch, or by its mechanism."""
+        arch, problem = self.arch, self.problem
+        if not problem.is_planar:
+            return None
+        if self.built.stands_at(arch.eta):
+            forces = standing_forces(arch, problem)
+            return None if forces is None else proof_of_rest(exact, forces)
+        from blocksim.arch.limit.mechanism import opening
+
+        rates, owner = opening(arch, problem.mu, self.mechanism)
+        in_size = arch.radius / problem.assembly.size
+        return proof_of_fall(exact, rates * [in_size, in_size, 1.0], owner)
 
     def mode(self, joints: tuple[ObservedJoint, ...]) -> Mode | None:
         """Return which of the seven modes it is."""

@@ -65,6 +65,8 @@ class CircularArch(CurvedArch):
     ----------
     half_angle : float or None
         Crown to springing [rad].
+    on_supports : bool
+        Whether supports are drawn however it is made.
     half_angle_deg : float or None
         The same [deg].
     eta : float or None
@@ -99,6 +101,7 @@ class CircularArch(CurvedArch):
         choices=("curved", "chord", "centreline"),
     )
     half_angle: float | None = None
+    on_supports: bool = False
     half_angle_deg: float | None = _instead(
         "crown to springing, in place of left_deg and right_deg", HALF_ANGLE_DEG
     )
@@ -215,7 +218,8 @@ class CircularArch(CurvedArch):
     def in_radii(self) -> bool:
         """Whether it is a symmetric ring by its half-angle, without fill, on two planes."""
         ring = self.half_angle is not None and self.weight in WEIGHTS
-        return ring and self.fill is None and self.joints != "vertical"
+        drawn = self.on_supports or self.fill is not None
+        return ring and not drawn and self.joints != "vertical"
 
     @cached_property
     def shape(self) -> Arch | None:
@@ -238,13 +242,6 @@ class CircularArch(CurvedArch):
             depth=self.depth,
             specific_weight=self.unit_weight,
         )
-
-    def between_supports(self) -> CircularArch:
-        """Return the same by the angles to its springings: with supports that can move."""
-        given = {name: getattr(self, name) for name in fields_of(CurvedArch)}
-        for name in ("radius", *SPRINGINGS):
-            given[name] = getattr(self, name)
-        return CircularArch(**given, friction=self.friction, density=self.density)
 
     def problem(self) -> Problem:
         """Return the arch under its own weight and that of its fill."""

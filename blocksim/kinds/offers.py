@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import ObservedJoint
 from blocksim.blocks.problem import Problem
 from blocksim.limit.carried import Carried, carried_by
@@ -16,6 +15,8 @@ from blocksim.simulation.verdict import Evidence, Verdict
 
 if TYPE_CHECKING:
     from blocksim.blocks.problem import Problem
+    from blocksim.limit.exact import Exact
+    from blocksim.limit.proof import Proof
     from blocksim.simulation.observation import Observation
 
 
@@ -120,8 +121,8 @@ class Offers:
     def carried(self, joint: int | None = None) -> Carried | None:
         """Return what the blocks carry; thrust at a joint."""
 
-    def forces(self) -> Array | None:
-        """Return forces of equilibrium, as of `Equilibrium`, for a proof that it stands."""
+    def proof(self, exact: Exact) -> Proof | None:
+        """Prove that it stands or falls, by its own statics."""
 
     def mode(self, joints: tuple[ObservedJoint, ...]) -> Any:
         """Return what the maker calls a mechanism whose joints do this."""

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.given import Body
 from blocksim.blocks.made import Fill, Made
 from blocksim.blocks.maker import FARTHEST, Maker, count, metres, parameter
 from blocksim.common.errors import InputError
 from blocksim.kinds.archkind import ArchKind
-from blocksim.kinds.blockwork import floor, pier
+from blocksim.kinds.blockwork import fill_over, floor, head, pier
 from blocksim.kinds.circular import CircularArch
 
 LEVEL = 1e-9
@@ -58,48 +56,37 @@ class Portal(Maker):
 
     def made(self, density: float) -> Made:
         """Make floor, piers, skewbacks and voussoirs; joints are found."""
-        faces = self.arch.stones.faces[[0, -1]]
-        require_bearing(self.arch, faces)
+        arch, depth = self.arch, self.arch.depth
+        faces = arch.stones.faces[[0, -1]]
+        require_bearing(arch, faces)
         ground = float(faces[:, 0, 1].min()) - self.pier_height
         foot = self.pier_width if self.foot_width is None else self.foot_width
-        bodies: list[Body] = []
-        tops: list[int] = []
+        bodies, fills = list[Body](), list[Fill]()
         widest = max(foot, self.pier_width)
         for name, face, side in (("left", faces[0], -1.0), ("right", faces[1], 1.0)):
-            inner, spring = face[0].tolist()
+            (inner, spring), (outer, high) = face.tolist()
             edge = inner + side * self.pier_width
             below, above = sorted((inner, inner + side * foot)), sorted((inner, edge))
             bodies += pier(
-                f"{name} pier", below, above, ground, spring, self.pier_courses, self.arch.depth
+                f"{name} pier", below, above, ground, spring, self.pier_courses, depth
             )
-            bodies += skewback(name, face, edge, self.arch)
-            tops.append(len(bodies))
-        left, right = faces[0, 0, 0] - widest, faces[1, 0, 0] + widest
-        reach = (right - left) / 4
+            left, right = sorted([(edge, high), (outer, high)])
+            near = LEVEL * arch.thickness
+            bodies += head(f"{name} skewback", above, spring, left, right, near, depth)
+            if arch.fill is not None:
+                road, heavy = arch.top + arch.fill, density * arch.fill_density * depth
+                fills += fill_over(len(bodies), left, right, road, heavy)
+        west, east = faces[0, 0, 0] - widest, faces[1, 0, 0] + widest
+        reach = (east - west) / 4
         first = len(bodies) + 1
         return Made(
             bodies=(
-                floor(left - reach, right + reach, ground, reach),
+                floor(west - reach, east + reach, ground, reach),
                 *bodies,
-                *self.arch.bodies(density),
+                *arch.bodies(density),
             ),
-            fills=(*self.arch.fills(density, first), *self._on_piers(density, tops, faces)),
+            fills=(*arch.fills(density, first), *fills),
         )
-
-    def _on_piers(self, density: float, tops: list[int], faces: Array) -> list[Fill]:
-        """Return the weight of the fill over the piers, outside the springings."""
-        arch, found = self.arch, list[Fill]()
-        if arch.fill is None:
-            return found
-        for body, face, side in zip(tops, faces, (-1.0, 1.0), strict=True):
-            (inner, _), (outer, height) = face.tolist()
-            edge = inner + side * self.pier_width
-            area = abs(edge - outer) * (arch.top + arch.fill - height)
-            if area > 0:
-                weight = density * arch.fill_density * arch.depth * area
-                middle = (edge + outer) / 2
-                found.append(Fill(body=body, weight=weight, point=(middle, height)))
-        return found
 
 
 def _reach(face: Array) -> float:
@@ -114,15 +101,3 @@ def require_bearing(arch: ArchKind, faces: Array) -> None:
             raise InputError(
                 "arch", arch.name, "one whose springings do not lean in over the opening"
             )
-
-
-def skewback(name: str, face: Array, edge: float, arch: ArchKind) -> list[Body]:
-    """Make the block between the level head of a pier and an inclined springing."""
-    (inner, low), (outer, high) = face.tolist()
-    if high - low <= LEVEL * arch.thickness:
-        return []
-    corners = [[inner, low], [edge, low], [edge, high], [outer, high]]
-    if abs(edge - outer) <= LEVEL * arch.thickness:
-        corners = corners[:3]
-    turned = np.array(corners)[:: 1 if edge > inner else -1]
-    return [Body(polygons=(turned,), name=f"{name} skewback", depth=arch.depth)]

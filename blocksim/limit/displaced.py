@@ -225,6 +225,12 @@ class Displaced:
         """Tell whether contacts that are closed are so in fact: the blocks could follow."""
         return bool(np.abs(self._apart(frame)[0]).max(initial=0.0) <= OFF)
 
+    def held(self, frame: Frame) -> Frame:
+        """Return a frame without the contacts that have come apart."""
+        points = self._points(frame)
+        near = np.linalg.norm(points[:, 1] - points[:, 0], axis=-1) <= OFF
+        return replace(frame, closed=frame.closed & near)
+
     def opened(
         self, frame: Frame, rates: Array, value_rate: float
     ) -> tuple[Frame, Lost | None]:

@@ -65,7 +65,10 @@ class Exact:
                 self._load(pull, Fraction(factor), load, at)
         finest = max(each.denominator for wrench in pull for each in wrench)
         self.force = Fraction(1, finest)
-        self.pull = [[int(each * finest) for each in wrench] for wrench in pull]
+        self.pull = [
+            [each.numerator * (finest // each.denominator) for each in wrench]
+            for wrench in pull
+        ]
 
     def _load(
         self, pull: list[Vector], factor: Fraction, load: Load, point: Point | None
@@ -85,12 +88,20 @@ class Exact:
     def allowed(self) -> list[list[int]]:
         """What may be left on each block, in units of force, and of that times the grain."""
         assembly = self.problem.assembly
-        shapes = [np.concatenate(block.polygons) for block in assembly.blocks]
-        reach = [float(np.abs(shape - centre).sum(axis=1).max())
-                 for shape, centre in zip(shapes, assembly.centres, strict=True)]  # fmt: skip
-        most = [SLACK * weight / self.force for weight in self.weights]
-        return [[int(one), int(one), int(one * Fraction(far) / self.grain)]
-                for one, far in zip(most, reach, strict=True)]  # fmt: skip
+        outlines, pieces = (column(assembly.blocks, name) for name in ("vertices", "parts"))
+        shapes = [np.concatenate(parts) if parts else outline
+                  for outline, parts in zip(outlines, pieces, strict=True)]  # fmt: skip
+        count = np.array([len(shape) for shape in shapes])
+        arms = np.concatenate(shapes) - np.repeat(assembly.centres, count, axis=0)
+        reach = np.maximum.reduceat(np.abs(arms).sum(axis=1), count.cumsum() - count)
+        found: list[list[int]] = []
+        for weight, far in zip(self.weights, reach.tolist(), strict=True):
+            above, below = far.as_integer_ratio()
+            most = weight.numerator * self.force.denominator * SLACK.numerator
+            least = weight.denominator * SLACK.denominator
+            turn = most * above * self.grain.denominator // (least * below)
+            found.append([most // least, most // least, turn])
+        return found
 
 
 def whole_numbers(values: Sequence[float]) -> tuple[Fraction, list[int]]:

@@ -43,11 +43,10 @@ def handed_on(
         # On the block after the joint: about the first end.
         about = moment - (x - cx) * v + (y - cy) * u
         p, q = exact.normals[joint]
-        square = sign * (p * p + q * q)
-        first, second = Fraction(u * p + v * q + about, square), Fraction(-about, square)
-        half = Fraction(v * p - u * q, 2 * square)
-        for at, more in enumerate((first, half, second, half), 4 * joint):
-            parts[at] += more
+        double, half = 2 * sign * (p * p + q * q), v * p - u * q
+        more = (2 * (u * p + v * q + about), half, -2 * about, half)
+        for at, above in enumerate(more, 4 * joint):
+            parts[at] = Fraction(parts[at] * double + above, double)
         if other != SUPPORT:
             (ox, oy), wrench = exact.centres[other], left[other]
             wrench[0] += u

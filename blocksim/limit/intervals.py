@@ -19,8 +19,9 @@ from typing import Any
 
 import numpy as np
 
+from blocksim.blocks.acting import push_on_all
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.problem import Load, Problem
+from blocksim.blocks.problem import Problem
 from blocksim.limit.statics import collapse, equilibrium
 
 FINEST = 1e-9
@@ -62,11 +63,7 @@ def over_tilt(problem: Problem[Any], low: float, high: float) -> tuple[Interval,
     """
     if problem.is_loaded or problem.unturned.any():
         return _joined(_Arc(problem).parts(low, high), low, high)
-    across = Load(
-        force=problem.across[: problem.assembly.dimensions],
-        blocks=tuple(range(len(problem.assembly.blocks))),
-        per_weight=True,
-    )
+    across = push_on_all(problem, problem.across[: problem.assembly.dimensions])
     # To tilt gravity is to add a force across it, of the tangent's size, and to scale both.
     found = over_factor(replace(problem, live=(across,), load=0.0))
     return tuple(

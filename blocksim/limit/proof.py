@@ -26,11 +26,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.common.version import __version__
 from blocksim.limit.exact import NOTHING, SLACK, Exact, Number, whole_numbers
 from blocksim.limit.handing import handed_on
-from blocksim.limit.rational import Bodies
+from blocksim.limit.rational import Bodies, as_bodies
 from blocksim.verify import FORMAT, seal
 
 ROUNDED = 1e-15
@@ -124,16 +124,21 @@ def proof_of_rest(exact: Exact, forces: Array) -> Proof | None:
     return Proof(exact=exact, claim="stands", tolerance=SLACK, forces=whole, unit=unit)
 
 
-def proof_of_fall(exact: Exact, rates: Array) -> Proof | None:
+def proof_of_fall(
+    exact: Exact, rates: Array, owner: Sequence[int] | None = None
+) -> Proof | None:
     """Prove that a problem falls.
 
     `rates`, (blocks, 3): As of `Equilibrium`, of a mechanism that opens joints by more than
         round-off.
+    `owner`, (blocks,) sequence of int: As of `proof_in_rationals`; by default each block moves
+        by itself.
     Returns: None where these rates prove nothing.
     """
     size = exact.problem.assembly.size / float(exact.grain)
     _, whole = whole_numbers((rates * [size, size, 1.0]).ravel().tolist())
-    return _of_motion(exact, [whole[at : at + 3] for at in range(0, len(whole), 3)])
+    each = [whole[at : at + PLANAR] for at in range(0, len(whole), PLANAR)]
+    return _of_motion(exact, each if owner is None else as_bodies(exact, each, owner))
 
 
 def proof_of_parting(exact: Exact, joint: int, above: Set[int], way: int) -> Proof | None:
@@ -214,8 +219,13 @@ def _within(exact: Exact, parts: Sequence[Number]) -> bool:
     """Tell whether all forces press and lie within friction."""
     for at, (a, b) in enumerate(zip(parts[::2], parts[1::2], strict=True)):
         mu = exact.friction[at // 2]
-        if a < 0 or (b and mu is not None and abs(b) > mu * a):
+        if a < 0:
             return False
+        if b and mu is not None:
+            # |b| > mu a, in whole numbers.
+            most = mu.numerator * a.numerator * b.denominator
+            if abs(b.numerator) * a.denominator * mu.denominator > most:
+                return False
     return True
 
 

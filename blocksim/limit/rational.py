@@ -146,15 +146,8 @@ class Bodies:
         rates = [-_fraction(each) for each in vertex.prices]
         below = math.lcm(*(each.denominator for each in rates))
         whole = [int(each * below) for each in rates]
-        found: list[list[int]] = []
-        for body, (cx, cy) in zip(self._owner, self._exact.centres, strict=True):
-            if body == SUPPORT:
-                found.append([0] * PLANAR)
-                continue
-            (px, py), at = self._about[body], PLANAR * body
-            x, y, turn = whole[at : at + PLANAR]
-            found.append([x - turn * (cy - py), y + turn * (cx - px), turn])
-        return found
+        of_blocks = [whole[PLANAR * body :][:PLANAR] or [0] * PLANAR for body in self._owner]
+        return as_bodies(self._exact, of_blocks, self._owner)
 
 
 class _Vertex:
@@ -271,6 +264,23 @@ class _Vertex:
     def _column(self, index: int) -> Any:
         column = self._columns[index]
         return flint.fmpq_mat(self._size, 1, [column.get(at, 0) for at in range(self._size)])
+
+
+def as_bodies(
+    exact: Exact, rates: Sequence[list[int]], owner: Sequence[int]
+) -> list[list[int]]:
+    """Return the motion of each block with the first one of its body.
+
+    `rates`, (blocks,): x, y and rotation of each.
+    `owner`: As of `Bodies`.
+    """
+    first, found = dict[int, int](), list[list[int]]()
+    for block, (body, (cx, cy)) in enumerate(zip(owner, exact.centres, strict=True)):
+        at = first.setdefault(body, block)
+        (px, py), (x, y, turn) = exact.centres[at], rates[at]
+        moved = [x - turn * (cy - py), y + turn * (cx - px), turn]
+        found.append([0] * PLANAR if body == SUPPORT else moved)
+    return found
 
 
 def _fraction(value: Any) -> Fraction:

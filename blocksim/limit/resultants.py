@@ -23,16 +23,19 @@ SIDES = ("left", "right")
 class Resultants:
     """What each joint carries, as it acts on the block after it.
 
-    `normal`, `friction`, (joints,): Along normal and tangent [N].
-    `force`, (joints, 2): x and y [N].
-    `point`, (joints, 2): Where the resultant crosses the joint [m]; nan where it carries
-        nothing.
+    In space width and stress are nan.
+
+    `normal`, `friction`, (joints,): Along normal and tangent; in space all that is across [N].
+    `force`, (joints, 2 or 3): x, y and z [N].
+    `point`, (joints, 2 or 3): Where the resultant crosses the joint [m]; nan where it carries
+        nothing. In space the centre of pressure, or the middle where nothing presses.
     `width_used`, (joints,): Distance of that point from the middle of the joint, over half its
         width; 0 where it carries nothing, and for corners, which have no width.
     `stress`, (joints,): Pressure of a rectangular block of stress about that point [Pa]: even
         from the nearer end of the joint to as far beyond the point. inf at an end, nan of
         corners, 0 where it carries nothing.
     `friction_used`, (joints,): Friction over the most there can be; 0 where it carries nothing.
+        In space of all points of the joint together, so that twisting counts.
     """
 
     normal: Array
@@ -46,7 +49,7 @@ class Resultants:
     @property
     def used(self) -> Array:
         """The larger of the shares of width and friction that each joint uses, (joints,)."""
-        return np.maximum(self.width_used, self.friction_used)
+        return np.fmax(self.width_used, self.friction_used)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -83,6 +83,13 @@ class Path:
         return self.frames[-1].value
 
     @property
+    def falls_for_good(self) -> bool:
+        """Whether it ends in a fall in which nothing holds the blocks."""
+        return self.ends == "collapse" and all(
+            each.what == "collapse" for each in self.events[-1:]
+        )
+
+    @property
     def first_fall(self) -> float | None:
         """How far the supports moved when blocks first fell, caught again or not [m]."""
         if not self.events and self.ends == "collapse":
@@ -134,9 +141,12 @@ def follow(problem: Problem, highest: float, steps: int = 100) -> Path:
 def displaced_at(problem: Problem, path: Path, value: float) -> Problem:
     """Return a problem as it lies where the supports have moved so far.
 
-    Contacts that are open are none; beyond the end of the path the last hinges go on.
+    Contacts that are open are none. Beyond a collapse it is the problem as it begins to fall;
+    beyond another end of the path the last hinges go on.
     """
     blocks = Displaced(problem)
+    if value > path.value and path.falls_for_good:
+        return blocks.problem(blocks.held(_beyond(blocks, path.frames[-1])))
     before = [each for each in path.frames if each.value <= value]
     # As built all contacts are closed.
     last = before[-1] if before and value > 0 else path.frames[0]
@@ -177,15 +187,10 @@ def _falls(blocks: Displaced, frame: Frame) -> tuple[Frame | None, Frame | None,
     Returns `fallen`: The hinges with which they begin to fall.
     Returns `lost`: What else a joint does in the fall, which is not followed.
     """
-    now, first = frame, None
-    for push in PUSH:
-        now = blocks.carried(frame, frame.value + push * blocks.size)
-        if not blocks.fit(now):
-            # Hinges have got into line: the blocks cannot follow, and come apart.
-            return None, None, None
-        if blocks.margin(now) < -10 * ENOUGH:
-            break
-    way = 0.0
+    now, first, way = _beyond(blocks, frame), None, 0.0
+    if not blocks.fit(now):
+        # Hinges have got into line: the blocks cannot follow, and come apart.
+        return None, None, None
     while way < FALLEN:
         rates = falling(blocks.problem(now))
         if rates is None:
@@ -199,6 +204,17 @@ def _falls(blocks: Displaced, frame: Frame) -> tuple[Frame | None, Frame | None,
         now = blocks.shut(_where(blocks, blocks.closing, now, ahead)) if shuts else ahead
         way += WAY / 100 if shuts else WAY
     return None, first, None
+
+
+def _beyond(blocks: Displaced, frame: Frame) -> Frame:
+    """Carry the blocks on until they clearly fall, or cannot follow."""
+    now = frame
+    for push in (0.0, *PUSH):
+        now = blocks.carried(frame, frame.value + push * blocks.size)
+        # Where they cannot follow it is -1.
+        if blocks.margin(now) < -10 * ENOUGH:
+            break
+    return now
 
 
 def _follows(blocks: Displaced, frame: Frame) -> tuple[Frame, Lost | None]:

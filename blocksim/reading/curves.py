@@ -21,6 +21,8 @@ STRAIGHT = 1e-9
 """Share of its length by which a curve may be off its chord and be a straight line."""
 SAMPLED = 65
 """Places at which it is looked how far chords are off."""
+FAR = 1e100
+"""Coordinates beyond which squares of lengths may be none that a float can hold."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 Corners = list[tuple[float, float]]
@@ -42,6 +44,11 @@ class Chords:
 
 
 LINE = Chords([])
+TOO_FAR = Chords([], wrong="reaches too far")
+
+
+def _near(*points: complex) -> bool:
+    return all(abs(each.real) <= FAR and abs(each.imag) <= FAR for each in points)
 
 
 def arc(start: complex, end: complex, bulge: float) -> Chords:
@@ -50,6 +57,8 @@ def arc(start: complex, end: complex, bulge: float) -> Chords:
     `bulge`: Tangent of a quarter of its angle, above 0 where it turns counter-clockwise (as of
         DXF).
     """
+    if not _near(start, end, bulge):
+        return TOO_FAR
     chord = end - start
     if abs(bulge) < STRAIGHT or not chord:
         return LINE
@@ -66,6 +75,8 @@ def arc(start: complex, end: complex, bulge: float) -> Chords:
 def bezier(points: list[complex]) -> Chords:
     """Return a cubic of four points as chords."""
     start, first, second, end = points
+    if not _near(*points):
+        return TOO_FAR
     size = max(abs(each - start) for each in points[1:])
     chord = end - start
     if not chord or max(
@@ -106,6 +117,8 @@ def ellipse(
     `large`, `rising`: Whether it is the longer one of two arcs, and the one on which the angle
         grows.
     """
+    if not _near(start, end, *radii):
+        return TOO_FAR
     rx, ry = map(abs, radii)
     if not (rx and ry) or start == end:
         return LINE

@@ -139,15 +139,22 @@ def _line(shape: Shape, points: list[Any], bulges: list[float], *, closed: bool)
     around = ends + ends[:1] * (closed and ends[:1] != ends[-1:])
     if not all(math.isfinite(each) for point in around for each in point):
         return replace(shape, corners=around, closed=closed)
-    corners, stray = around[:1], 0.0
+    corners, stray, wrong = around[:1], 0.0, None
     for (x, y), (to_x, to_y), bulge in zip(around, around[1:], bulges, strict=False):
         found = arc(complex(x, y), complex(to_x, to_y), bulge)
         corners += [*found.corners, (to_x, to_y)]
-        stray = max(stray, found.stray)
+        stray, wrong = max(stray, found.stray), wrong or found.wrong
     if len(corners) < 2:
         return replace(shape, wrong="is a point", corners=corners)
-    step = step_of(np.array(ends).ravel())
-    return replace(shape, what=what, corners=corners, closed=closed, stray=stray, step=step)
+    return replace(
+        shape,
+        what=what,
+        corners=corners,
+        closed=closed,
+        wrong=wrong,
+        step=step_of(np.array(ends).ravel()),
+        stray=stray,
+    )
 
 
 def _flat(points: Iterable[Any]) -> Corners:

@@ -108,9 +108,12 @@ def _objects(content: bytes, ending: str) -> Iterator[tuple[str, Array, Facets]]
         options |= {"split_objects": True, "group_material": False, "skip_materials": True}
     try:
         library = cast("Any", trimesh)
-        scene: Any = library.load_scene(io.BytesIO(content), file_type=ending, **options)
+        # Numbers beyond all bounds are told below.
+        with np.errstate(all="ignore"):
+            scene: Any = library.load_scene(io.BytesIO(content), file_type=ending, **options)
+            dumped: list[Any] = scene.dump()
         # The library gives objects in no order of their own.
-        meshes: list[Any] = sorted(scene.dump(), key=lambda mesh: str(mesh.metadata["name"]))
+        meshes = sorted(dumped, key=lambda mesh: str(mesh.metadata["name"]))
         total = sum(len(mesh.faces) for mesh in meshes)
         # Files without objects have no names: their bodies are numbered.
         named = ending in {"obj", "glb"}
@@ -124,7 +127,9 @@ def _objects(content: bytes, ending: str) -> Iterator[tuple[str, Array, Facets]]
     require(0 < total <= MOST_FACETS, "mesh", f"{total} facets", f"1 to {MOST_FACETS}")
     points = np.concatenate([np.asarray(mesh.vertices, dtype=np.float64) for mesh in meshes])
     require(bool(np.isfinite(points).all()), "mesh", "nan or inf", "finite coordinates")
-    if np.array_equal(points, points.astype(np.float32)):
+    with np.errstate(over="ignore"):
+        single = np.array_equal(points, points.astype(np.float32))
+    if single:
         # Single precision: as drawn, where rounding explains how they differ.
         largest = float(np.abs(points).max()) or 1.0
         points = points.round(DIGITS - int(np.ceil(np.log10(largest))))

@@ -122,19 +122,14 @@ def _arch_bracket(answer: Bracket[Any]) -> ArchBracketRecord | None:
 def _joints(answer: Check[Any], carried: Carried | None) -> list[JointRecord]:
     problem: Problem[Any] = answer.problem
     assembly, words = problem.assembly, state_words(problem)
-    found = None if carried is None else carried.resultants
-    in_space = answer.forces if problem.in_space else None
+    found = answer.resultants if carried is None else carried.resultants
+    flat = None if problem.in_space else found
     known = problem.weighed and problem.has_size
     told: list[JointRecord] = []
     for k, joint in enumerate(assembly.joints):
         ends = _ends(joint)
         seen = answer.joints[k]
         end = HINGED.get(seen.state) if not problem.in_space else None
-        normal = friction = None
-        if found is not None:
-            normal, friction = float(found.normal[k]), float(found.friction[k])
-        elif in_space is not None:
-            normal, friction = float(in_space[k, 0]), math.hypot(*in_space[k, 1:])
         told.append(
             {
                 "a": side_name(assembly, k, 0),
@@ -144,12 +139,12 @@ def _joints(answer: Check[Any], carried: Carried | None) -> list[JointRecord]:
                 "angle_deg": math.degrees(seen.angle) if problem.is_arch else None,
                 "state": words(seen.state),
                 "hinge": None if end is None else ends[min(end, len(ends) - 1)],
-                "normal_force": normal,
-                "friction_force": friction,
-                "width_used": None if found is None else float(found.width_used[k]),
+                "normal_force": None if found is None else float(found.normal[k]),
+                "friction_force": None if found is None else float(found.friction[k]),
+                "width_used": None if flat is None else float(flat.width_used[k]),
                 "stress_MPa": None
-                if found is None or len(ends) == 1 or not known
-                else float(found.stress[k]) / 1e6,
+                if flat is None or len(ends) == 1 or not known
+                else float(flat.stress[k]) / 1e6,
                 "friction_used": None if found is None else float(found.friction_used[k]),
             }
         )

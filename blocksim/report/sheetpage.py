@@ -15,7 +15,6 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.dates import is_dated, made_at
 from blocksim.common.version import __version__
 from blocksim.kinds.offers import offers_of
-from blocksim.limit.space import SpatialEquilibrium
 from blocksim.report.answerwords import ASIDE, proof_words
 from blocksim.report.cases import HEADINGS, case_row
 from blocksim.report.environment import environment
@@ -36,7 +35,6 @@ from blocksim.report.sheettables import (
     MOST,
     joint_rows,
     reaction_table,
-    solid_joints,
     solid_reactions,
 )
 from blocksim.simulation.verdict import Verdict, reason_of
@@ -98,12 +96,10 @@ def _said(answer: Check[Any], sheet: Sheet) -> dict[str, object]:
     """Return what the page says of a structure and of the answer."""
     problem = answer.problem
     headings, reactions = reaction_table(sheet)
-    rows = joint_rows(sheet)
-    if problem.in_space and isinstance(answer.static, SpatialEquilibrium):
-        forces = answer.static.point_forces
-        if forces is not None:
-            headings, reactions = ["force"], solid_reactions(problem, forces, sheet.unit)
-            rows = solid_joints(problem, forces, sheet.unit)
+    found = answer.resultants
+    if problem.in_space and found is not None:
+        headings, reactions = ["force"], solid_reactions(problem, found, sheet.unit)
+    rows = joint_rows(problem, found, sheet.unit)
     half = (len(rows) + 1) // 2
     return {
         "title": sheet.title,

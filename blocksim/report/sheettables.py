@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -11,9 +12,8 @@ from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.joints import joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
-from blocksim.limit import in_world, reactions
+from blocksim.limit import Resultants, in_world, reactions
 from blocksim.view.sheet import Sheet
-from blocksim.view.solidscene import pressed
 from blocksim.view.units import ForceUnit
 
 MOST = 60
@@ -31,11 +31,11 @@ class JointRow:
     name: str
     normal: str
     friction: str
+    eccentricity: str
+    width_used: str
     friction_used: str
+    stress: str
     worst: bool
-    eccentricity: str = ""
-    stress: str = ""
-    width_used: str = ""
 
 
 def reaction_table(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
@@ -66,28 +66,34 @@ def reaction_table(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
     return [name for name, _ in columns], rows
 
 
-def joint_rows(sheet: Sheet) -> list[JointRow]:
-    """Tell what joints carry in the state of greatest margin, in their order."""
-    carried, problem, unit = sheet.carried, sheet.problem, sheet.unit
-    found = None if carried is None else carried.resultants
+def joint_rows(
+    problem: Problem[Any], found: Resultants | None, unit: ForceUnit
+) -> list[JointRow]:
+    """Tell what joints carry, in their order."""
     if found is None:
         return []
-    joints = problem.assembly.joint_arrays
-    middle = joints.ends.mean(axis=1) * problem.assembly.size
-    off = ((found.point - middle) * joints.tangent).sum(axis=1)
-    chosen = np.sort(np.argsort(-found.used, kind="stable")[:MOST])
     names, worst = joint_names(problem.assembly), int(found.used.argmax())
+    chosen = np.sort(np.argsort(-found.used, kind="stable")[:MOST])
     known = problem.weighed and problem.has_size
+    if problem.in_space:
+        middles = [each.points.mean(axis=0) for each in problem.assembly.joints]
+        off = np.linalg.norm(found.point - middles, axis=1)
+        hinges = np.zeros(len(off), dtype=np.bool_)
+    else:
+        joints = problem.assembly.joint_arrays
+        middle = joints.ends.mean(axis=1) * problem.assembly.size
+        off = ((found.point - middle) * joints.tangent).sum(axis=1)
+        hinges = joints.is_corner
     return [
         JointRow(
             name=names[k],
             normal=unit.number(float(found.normal[k])),
             friction=unit.number(float(found.friction[k])),
             eccentricity="-"
-            if joints.is_corner[k] or np.isnan(off[k])
+            if hinges[k] or np.isnan(off[k])
             else f"{round(1e3 * off[k]) + 0:d}",
             stress=_stress(float(found.stress[k])) if known else "-",
-            width_used=HINGE if joints.is_corner[k] else percent(float(found.width_used[k])),
+            width_used=HINGE if hinges[k] else percent(float(found.width_used[k])),
             friction_used=percent(float(found.friction_used[k])),
             worst=k == worst,
         )
@@ -105,15 +111,11 @@ def percent(share: float) -> str:
 
 
 def solid_reactions(
-    problem: Problem[SpatialAssembly], forces: Array, unit: ForceUnit
+    problem: Problem[SpatialAssembly], found: Resultants, unit: ForceUnit
 ) -> list[list[str]]:
-    """Return rows of reactions along x, y and z, by support.
-
-    Forces are those at the points of joints, as of `SpatialEquilibrium` [N].
-    """
-    sums, _ = pressed(problem, forces)
+    """Return rows of reactions along x, y and z, by support."""
     borne: dict[int | None, Array] = {}
-    for joint, force in zip(problem.assembly.joints, sums, strict=True):
+    for joint, force in zip(problem.assembly.joints, found.force, strict=True):
         if SUPPORT in (joint.before, joint.after):
             # The force is that on `after`.
             on_block = force if joint.before == SUPPORT else -force
@@ -123,35 +125,4 @@ def solid_reactions(
         [(names[at] if at is not None else "") or "support"]
         + [unit.number(part) for part in force.tolist()]
         for at, force in borne.items()
-    ]
-
-
-def solid_joints(
-    problem: Problem[SpatialAssembly], forces: Array, unit: ForceUnit
-) -> list[JointRow]:
-    """Tell what joints carry, in their order.
-
-    Friction used is of the points of a joint together, so that twisting counts.
-    """
-    sums, places = pressed(problem, forces)
-    joints, names = problem.assembly.joints, joint_names(problem.assembly)
-    ends = np.cumsum([len(each.points) for each in joints])[:-1]
-    parts = np.split(forces, ends)
-    normal = np.array([part[:, 0].sum() for part in parts])
-    across = np.array([np.hypot(part[:, 1], part[:, 2]).sum() for part in parts])
-    middles = np.array([each.points.mean(axis=0) for each in joints])
-    off = np.linalg.norm(places - middles, axis=1)
-    most = problem.friction * normal
-    used = np.divide(across, most, out=np.zeros_like(most), where=most > 0)
-    chosen = np.sort(np.argsort(-used, kind="stable")[:MOST])
-    return [
-        JointRow(
-            name=names[k],
-            normal=unit.number(float(normal[k])),
-            friction=unit.number(math.sqrt(max(float(sums[k] @ sums[k]) - normal[k] ** 2, 0))),
-            friction_used=percent(float(used[k])),
-            worst=k == used.argmax(),
-            eccentricity=f"{1e3 * off[k]:.0f}",
-        )
-        for k in map(int, chosen)
     ]

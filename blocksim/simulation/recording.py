@@ -14,7 +14,7 @@ import numpy as np
 from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Block, Blocks
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.record import from_record, to_record
-from blocksim.common.checks import is_number, require
+from blocksim.common.checks import infinite, is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, json_text, opened, write_whole
 from blocksim.common.shown import Shown, renderer
@@ -267,7 +267,7 @@ def _foreign(where: str) -> InputError:
 def _numbers(written: Mapping[str, Any]) -> dict[str, Any]:
     """Read settings or a quality, whose numbers may be infinite."""
     inf = math.inf
-    named = {name: inf if each == "inf" else each for name, each in dict(written).items()}
+    named = {name: infinite(each) for name, each in dict(written).items()}
     if not all(each is None or is_number(each, -inf, inf) for each in named.values()):
         raise TypeError
     return named

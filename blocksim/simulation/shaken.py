@@ -20,7 +20,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from blocksim.blocks.acting import Load
+from blocksim.blocks.acting import push_on_all
 from blocksim.blocks.assembly import PLANAR, Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
@@ -151,9 +151,8 @@ def _is_known(problem: Problem) -> bool:
 
 def _pushed(problem: Problem, across: float) -> Problem:
     """Return a problem at a moment at which its ground accelerates by so much across [g]."""
-    blocks = tuple(range(len(problem.assembly.blocks)))
-    load = Load(force=np.array([-across, 0.0]), blocks=blocks, per_weight=True)
-    return replace(problem, shaking=None, dead=(*problem.dead, load))
+    push = push_on_all(problem, [-across, 0.0])
+    return replace(problem, shaking=None, dead=(*problem.dead, push))
 
 
 def _begin(world: World, simulation: Simulation[Any]) -> None:

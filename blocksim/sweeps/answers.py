@@ -16,9 +16,10 @@ from blocksim.arch.answers import ArchAnswer, ArchBracket
 from blocksim.ask.bracket import Bracket, bracket
 from blocksim.ask.check import Check, check
 from blocksim.ask.methods import STATIC
+from blocksim.common.checks import endless_text
 from blocksim.common.errors import MissingPart
 from blocksim.engines import NAMES, get_engine
-from blocksim.sweeps.case import Case, Pace, Row, written
+from blocksim.sweeps.case import Case, Pace, Row
 from blocksim.sweeps.statics import by_statics
 
 _ENCODER = json.JSONEncoder(allow_nan=False, check_circular=False)
@@ -165,7 +166,7 @@ def _checked(seen: Check) -> Row:
         "method": seen.method,
         "verdict": seen.verdict.value,
         "rest": seen.rest,
-        "load_factor": written(seen.load_factor),
+        "load_factor": endless_text(seen.load_factor),
         "reason": seen.reason,
     }
     if seen.shaken is not None:
@@ -178,7 +179,7 @@ def _bracketed(found: Bracket) -> Row:
     return {
         "method": found.method,
         "unit": found.unit,
-        "limit": written(found.limit),
+        "limit": endless_text(found.limit),
         "low": found.low,
         "high": found.high,
         "confirmed": found.confirmed,

@@ -13,14 +13,13 @@ from typing import (
     NamedTuple,
     Protocol,
     TypedDict,
-    cast,
     get_args,
     get_type_hints,
 )
 
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import AMPLITUDE, DURATION
-from blocksim.common.checks import FACTOR, TILT_DEG
+from blocksim.common.checks import FACTOR, TILT_DEG, endless_text
 from blocksim.common.fields import Field
 from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import structure_of
@@ -158,7 +157,7 @@ class Case(NamedTuple):
         parameters: Row = {}
         for name, value in self.given:
             (row if name in own or name in ACTING else parameters)[name] = value
-        row["mu"] = written(cast("float", row["mu"]))
+        row["mu"] = endless_text(row["mu"])
         for key, said in (
             ("parameters", parameters),
             ("over", self.over),
@@ -205,7 +204,7 @@ class Case(NamedTuple):
             table["shake"] |= {name: acting[name] for name in shaken if name in acting}
         if "load" in acting:
             table["load"] = acting["load"]
-        return {**table, "friction": written(mu)}
+        return {**table, "friction": endless_text(mu)}
 
 
 def is_plain(kind: str, names: Iterable[str], over: str | None, rest: str) -> bool:
@@ -219,11 +218,6 @@ def is_plain(kind: str, names: Iterable[str], over: str | None, rest: str) -> bo
     known = {*names}
     is_sized = "eta" in known or "ratio" in known
     return NEEDED <= known <= PLAIN and is_sized == (over is None)
-
-
-def written(value: float | None) -> float | str | None:
-    """Return a number that JSON can write."""
-    return "inf" if value is not None and math.isinf(value) else value
 
 
 class Questions(Protocol):

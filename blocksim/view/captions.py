@@ -14,6 +14,8 @@ from blocksim.simulation.shaken import outcome
 from blocksim.simulation.verdict import Verdict
 from blocksim.view.canvas import Label, Panel, Shape, arrow, colour, width_of
 from blocksim.view.drawing import friction_words, loading_words
+from blocksim.view.following import View
+from blocksim.view.placing import UPRIGHT
 from blocksim.view.sheet import factor_words
 from blocksim.view.solidstage import SolidStage
 from blocksim.view.stage import Stage
@@ -23,6 +25,8 @@ CLOCK = 405.0
 """Width of the clock and of what stands beside it, left of the legend [pixels at 720]."""
 LETTER = 13.0
 """Size of the legend's letters [pixels at 720]."""
+AHEAD = 0.01
+"""Way along gravity by which its direction in the picture is found [size]."""
 LENGTH = 6.0
 """How long the motion takes in a film whose slowness is not given, about [s]."""
 SLOW = (1, 2, 3, 4, 5, 6, 8)
@@ -30,13 +34,17 @@ SLOW = (1, 2, 3, 4, 5, 6, 8)
 
 
 def gravity_arrow(
-    stage: Stage | SolidStage, panel: Panel, size: float
+    stage: Stage | SolidStage, view: View, panel: Panel, size: float
 ) -> tuple[list[Shape], list[Label]]:
-    """Show where gravity pulls in the plane, in a corner, unless it is straight down."""
-    way = stage.recording.problem.gravity[:2]
-    if way[0] == 0:
+    """Show where a view sees gravity pull, in a corner, unless that is straight down."""
+    problem = stage.recording.problem
+    pull = UPRIGHT @ problem.gravity if problem.in_space else problem.gravity
+    down = np.array([0.0, -1.0, 0.0])
+    ends = np.stack([0 * pull, down, pull / np.linalg.norm(pull)])
+    start, *seen = view.places(AHEAD * ends)
+    straight, way = ((end - start) / np.hypot(*(end - start)) for end in seen)
+    if np.allclose(straight, way, atol=1e-9, rtol=0):
         return [], []
-    way = way / np.hypot(*way)
     middle = np.array([panel.x + panel.width - 64 * size, panel.y + panel.height - 36 * size])
     half = 30 * size * way
     shapes = arrow(middle - half, middle + half, colour(QUIET), size)

@@ -239,7 +239,7 @@ class Film:
         size = self._size
         each = zip(self._stages, self._views, self._panels, self._words, strict=True)
         for stage, view, panel, verdict in each:
-            pull, name = gravity_arrow(stage, panel, size) if self._flat else ([], [])
+            pull, name = gravity_arrow(stage, view, panel, size)
             around = list[Shape]()
             if self._shares is None:
                 # What the camera sees the same in every frame is drawn once.

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 import math
+import re
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -16,7 +17,7 @@ from blocksim.blocks.closing import marked_gaps
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.road import profile_of, road_of
 from blocksim.common.checks import require
-from blocksim.common.dates import is_dated
+from blocksim.common.dates import is_dated, present
 from blocksim.common.later import require_library
 from blocksim.common.version import __version__
 from blocksim.common.words import printable
@@ -52,6 +53,8 @@ ARROW, LEAST, HEAD = 14.0, 4.0, 1.5
 """Lengths of the largest and the smallest arrow of a force, and of its head [mm]."""
 TITLED = np.array([110.0, 8.0])
 """Width of a title block and height of its lines [mm]."""
+DATES = re.compile(r"(\$TDU?(?:CREATE|UPDATE)\n *40\n)[^\n]*")
+"""Of the header, where ezdxf writes those of the year 2000 so that a file can be made again."""
 METRES = 6
 """Of $INSUNITS."""
 LETTERS, HINGE = 2.5, 1.2
@@ -63,7 +66,7 @@ DASH = 0.4
 
 
 def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
-    """Write a sheet as DXF in metres; where pages say no times, it is of the year 2000."""
+    """Write a sheet as DXF in metres."""
     require_library("ezdxf", "DXF", "dxf")
     # It takes a second to import, which nothing else need wait for.
     import ezdxf
@@ -74,11 +77,14 @@ def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
     try:
         document = library.new("R2010", setup=True)
         _draw(document, sheet)
-        text = io.StringIO()
-        document.write(text)
+        written = io.StringIO()
+        document.write(written)
     finally:
         library.options.write_fixed_meta_data_for_testing = before
-    file.write(text.getvalue().encode(document.output_encoding, "dxfreplace"))
+    text = written.getvalue()
+    if is_dated():
+        text = DATES.sub(rf"\g<1>{library.tools.juliandate(present())}", text)
+    file.write(text.encode(document.output_encoding, "dxfreplace"))
 
 
 def _draw(document: Any, sheet: Sheet) -> None:

@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 
 from blocksim.common.version import __version__
 from blocksim.engines.base import Quality, Settings
-from blocksim.limit.space import SpatialEquilibrium
 from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import Canvas, Label, Panel, Shape, colour
 from blocksim.view.captions import legend_of, title
@@ -57,11 +56,11 @@ def solid_figure(answer: Check[SpatialAssembly]) -> Figure:
 
 def _forces(answer: Check[SpatialAssembly], view: SpatialView) -> list[Shape]:
     """Draw the resultants of joints over the blocks, as wide as they are large."""
-    static = answer.static
-    if not isinstance(static, SpatialEquilibrium) or static.point_forces is None:
+    assembly, carried = answer.problem.assembly, answer.resultants
+    if carried is None:
         return []
-    lines, shares = force_lines(answer.problem, static.point_forces)
-    seen = view.places(lines / answer.problem.assembly.size @ UPRIGHT.T)
+    lines, shares = force_lines(assembly, carried)
+    seen = view.places(lines / assembly.size @ UPRIGHT.T)
     return [
         Shape(line, edge=colour(THRUST), width=0.5 + 3.5 * share, closed=False)
         for line, share in zip(seen, shares.tolist(), strict=True)

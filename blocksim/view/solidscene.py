@@ -9,10 +9,10 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
-from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.blocks.space.parting import parted
-from blocksim.blocks.space.polyhedron import Polyhedron, frame
+from blocksim.blocks.space.polyhedron import Polyhedron
+from blocksim.limit.resultants import Resultants
 from blocksim.limit.space.statics import state_of
 from blocksim.view.camera import Face, Line, Piece
 from blocksim.view.canvas import Colour, colour, mixed, stone_tones
@@ -206,32 +206,15 @@ def told(states: Iterable[JointState]) -> list[tuple[str, str]]:
     return [words_of(each, is_arch=False) for each in sorted(seen)]
 
 
-def force_lines(problem: Problem[SpatialAssembly], forces: Array) -> tuple[Array, Array]:
+def force_lines(assembly: SpatialAssembly, found: Resultants) -> tuple[Array, Array]:
     """Return where the resultants of joints act, and how large they are.
 
-    `problem`.
-    `forces`, (points, 3): At the points of all joints, along their normals and across, as of
-        `SpatialStatics`.
     Returns `lines`, (joints, 2, 3): From end to end through the centre of pressure, in
         proportion to the force [m].
     Returns `shares`, (joints,): Of the largest force.
     """
-    sums, places = pressed(problem, forces)
-    sizes = np.linalg.norm(sums, axis=1)
+    sizes = np.linalg.norm(found.force, axis=1)
     largest = float(sizes.max(initial=0.0)) or 1.0
-    way = LONGEST * problem.assembly.size * sums / largest / 2
-    lines = np.stack([places - way, places + way], axis=1)
+    way = LONGEST * assembly.size * found.force / largest / 2
+    lines = np.stack([found.point - way, found.point + way], axis=1)
     return lines, np.where(sizes > FAINT * largest, sizes / largest, 0.0)
-
-
-def pressed(problem: Problem[SpatialAssembly], forces: Array) -> tuple[Array, Array]:
-    """Return the resultants of joints along x, y and z, and their centres of pressure [m]."""
-    sums, places = np.zeros((2, len(problem.assembly.joints), 3))
-    ends = np.cumsum([len(each.points) for each in problem.assembly.joints])[:-1]
-    for at, part in enumerate(np.split(forces, ends)):
-        joint = problem.assembly.joints[at]
-        sums[at] = part.sum(axis=0) @ np.vstack([joint.normal, frame(joint.normal)])
-        press = np.maximum(part[:, 0], 0.0)
-        weights = press if press.sum() > 0 else np.ones(len(press))
-        places[at] = np.average(joint.points, axis=0, weights=weights)
-    return sums, places

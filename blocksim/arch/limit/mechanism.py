@@ -46,6 +46,8 @@ SPARE = 1.0
 """Strength to spare looked for at most: a flat arch has any amount at a great thrust."""
 CLOSER = 1e-6
 """Unit in which the program is solved the second time."""
+WIDER = 1e-6
+"""Share by which joints are wider and rougher in a motion that rounding cannot close."""
 CONDITIONS = ("hinge-extrados", "hinge-intrados", "slides-out", "slides-in")
 """Order of the columns of `Mechanism.strength` and `Mechanism.rates`."""
 
@@ -122,6 +124,29 @@ def mechanism(arch: Arch, mu: float) -> Mechanism:
             found.angles, _moving(found.rates), crown_width(arch.half_angle, arch.voussoirs)
         ),
     )
+
+
+def opening(arch: Arch, mu: float, found: Mechanism) -> tuple[Array, list[int]]:
+    """Return a motion near a mechanism, in which joints open by more than round-off.
+
+    It is that of joints a little wider and rougher.
+
+    `found`: Of the same arch and friction.
+    Returns `rates`, (n, 3): Velocity of the centre of each voussoir, and rotation, r = 1;
+        `owner`: Of each the piece it moves with, -1 where it stays at rest.
+    """
+    half, kept = found.angles[found.angles >= 0], found.rates[found.angles >= 0]
+    rates = (kept * np.where(half == 0, 1.0, 2.0)[:, None]).ravel()
+    eta, rough, moving = arch.eta * (1 + WIDER), mu * (1 + WIDER), rates > 0
+    matrix = conditions(half, eta, rough, arch.centroid_factor).matrix[moving]
+    rates[moving] -= np.linalg.lstsq(matrix.T, matrix.T @ rates[moving], rcond=None)[0]
+    motions = of_half(half, rates.reshape(-1, 4), eta, rough).motions
+    moves = found.rates.max(axis=1) > 0
+    parted = np.cumsum(moves[:-1])
+    owner = np.where((parted == parted[-1]) & ~moves[-1], 0, parted) - 1
+    arms = arch.voussoir_centres
+    across = np.column_stack([-arms[:, 1], arms[:, 0]]) * motions[:, 2:]
+    return np.column_stack([motions[:, :2] + across, motions[:, 2]]), owner.tolist()
 
 
 def conditions(angles: Array, eta: float, mu: float, factor: float) -> Conditions:

@@ -138,17 +138,16 @@ def _tightest(bounds: Bounds) -> tuple[Bound, Bound]:
     """Smallest interval that conditions leave."""
     lower, upper = Bound(math.inf, -math.inf), Bound(-math.inf, math.inf)
     most, least = bounds.ends()
-    low = np.unravel_index(int(np.argmin(most)), most.shape)
-    high = np.unravel_index(int(np.argmax(least)), least.shape)
-    if most[low] < lower.short:
-        lower = _bound(bounds, float(most[low]), low)
-    if least[high] > upper.short:
-        upper = _bound(bounds, float(least[high]), high)
+    low, high = int(most.argmin()), int(least.argmax())
+    if most.flat[low] < lower.short:
+        lower = _bound(bounds, float(most.flat[low]), low)
+    if least.flat[high] > upper.short:
+        upper = _bound(bounds, float(least.flat[high]), high)
     return lower, upper
 
 
-def _bound(bounds: Bounds, short: float, place: tuple[np.intp, ...]) -> Bound:
-    where = tuple(int(index) for index in place)
+def _bound(bounds: Bounds, short: float, place: int) -> Bound:
+    where = tuple(map(int, np.unravel_index(place, bounds.rate.shape)))
     thrust = 1 - short if short < 0.5 else bounds.thrust(where)
     if len(where) == 3:
         return Bound(short, thrust, extrados=where[1], intrados=where[2])

@@ -23,7 +23,7 @@ from blocksim.blocks.entries import (
     Times,
     listed,
 )
-from blocksim.blocks.loads import LoadsOf, Names, acting_of, name_of, sides_of
+from blocksim.blocks.loads import LoadsOf, acting_of, given_joints, named_blocks
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import FaceJoint, Solid, SpatialAssembly
 from blocksim.blocks.space.joining import MOST_SOLIDS, assembly_in_space
@@ -167,33 +167,25 @@ def problem_of_solids(
 
 
 def _solids(written: SpatialFile) -> list[Solid]:
-    known = set[str]()
-    solids: list[Solid] = []
-    for at, block in enumerate(written.blocks):
-        name = name_of(block, f"blocks[{at}]", known, block.polyhedra, "polyhedra")
-        solids.append(
-            Solid(
-                parts=tuple(block.polyhedra or [block.vertices or []]),
-                name=name,
-                fixed=block.fixed,
-                weight=block.weight,
-                centre=block.centre,
-            )
+    return [
+        Solid(
+            parts=parts,
+            name=name,
+            fixed=block.fixed,
+            weight=block.weight,
+            centre=block.centre,
         )
-    return solids
+        for block, name, parts in named_blocks(written.blocks, "polyhedra")
+    ]
 
 
 def _joints(written: SpatialFile, solids: Sequence[Solid]) -> list[FaceJoint] | None:
     if written.joints is None:
         return None
-    allowed = "left out: joints are given, none is found"
-    require(written.tolerance is None, "tolerance", written.tolerance, allowed)
-    body_of = Names(solids)
     joints: list[FaceJoint] = []
-    for at, joint in enumerate(written.joints):
-        a, b = sides_of(joint, f"joints[{at}]", solids, body_of)
+    for joint, a, b in given_joints(written.joints, solids, written.tolerance):
         long = float(np.linalg.norm(joint.normal))
-        require(long > 0, f"joints[{at}].normal", joint.normal, "a direction")
+        require(long > 0, f"joints[{len(joints)}].normal", joint.normal, "a direction")
         joints.append(
             FaceJoint(
                 before=a,

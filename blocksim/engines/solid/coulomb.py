@@ -63,7 +63,7 @@ FINELY, ROUGHLY = 1e-15, 1e-10
 def solve(step: Step, last: Array | None, turns: int = TURNS) -> Answer:
     """Solve a step, from what was found in the last one or from nothing.
 
-    `last`, (points, 2, 3): Forces, and velocities over the step.
+    `last`, (points, 3): Forces.
     `turns`: Most turns of alternating directions, where nothing else leads to a solution.
     """
     if not len(step.friction):
@@ -75,9 +75,9 @@ def solve(step: Step, last: Array | None, turns: int = TURNS) -> Answer:
     near = last is None
     if last is not None:
         enough = ENOUGH
-        near = briefly or step.residual(step.pushed_by(last[:, 0]), last[:, 0]) <= NEAR
+        near = briefly or step.residual(step.pushed_by(last), last) <= NEAR
         if near:
-            best = _gone_on(step, last[:, 0], last[:, 1], briefly=briefly)
+            best = _gone_on(step, last, briefly=briefly)
     begun = last if briefly else None
     guesses = _guesses(step, begun, turns) if best.residual > enough else ()
     enough = LAWFUL if briefly else enough
@@ -91,7 +91,7 @@ def solve(step: Step, last: Array | None, turns: int = TURNS) -> Answer:
             if best.residual <= enough:
                 return best
     if last is not None and not near and best.residual > enough:
-        found = _followed(step, last[:, 0])
+        found = _followed(step, last)
         best = found if found.residual < best.residual else best
     return best if best.residual <= UNSOLVED else _as_last_resort(step, best)
 
@@ -110,7 +110,7 @@ def _as_last_resort(step: Step, best: Answer) -> Answer:
 
 def _guesses(step: Step, last: Array | None, turns: int) -> Iterator[Array]:
     """Give forces to begin with, the likeliest and cheapest first."""
-    opening = dilating(step) if last is None else dilating(step, _slip(last[:, 1]), IN_MOTION)
+    opening = dilating(step) if last is None else dilating(step, _slip(step.drift), IN_MOTION)
     if opening is not None:
         yield opening
     if last is None:
@@ -119,7 +119,7 @@ def _guesses(step: Step, last: Array | None, turns: int) -> Iterator[Array]:
         if less is not None:
             yield less
     # Near the limit of rest, which is not to be had by now, no forces lead to motion.
-    begun = None if last is None else opening
+    begun = None if last is None else last
     yield from _alternated(step, np.zeros_like(step.drift) if begun is None else begun, turns)
 
 
@@ -182,14 +182,16 @@ def _slip(velocities: Array) -> Array:
     return np.hypot(velocities[:, 1], velocities[:, 2])
 
 
-def _gone_on(step: Step, p: Array, u: Array, *, briefly: bool) -> Answer:
-    """Let springs follow from forces and, in motion, velocities of the last step.
+def _gone_on(step: Step, p: Array, *, briefly: bool) -> Answer:
+    """Let springs follow from forces of the last step and, in motion, from its velocities.
 
     What closes, sticks and slides there is taken to do so still, which stiff springs would not
     see where forces and accelerations do not quite match.
     """
     if not briefly:
         return _followed(step, p)
+    u = step.drift.copy()
+    u[p[:, 0] > 0, 0] = 0.0
     given = _given_way(p - STIFF * u, step.friction)
     held = p + STIFF * np.einsum("pij,pj->pi", given, u - step.drift)
     x = step.with_springs(STIFF * given, step.pushed_by(held))

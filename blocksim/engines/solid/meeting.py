@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
-from blocksim.engines.solid.facing import Facing
+from blocksim.engines.solid.facing import Facing, frames
 from blocksim.engines.solid.hulls import Hulls, Places
 
 Flags = NDArray[np.bool_]
@@ -45,6 +45,11 @@ class Points(NamedTuple):
     def at(self, which: Flags) -> Points:
         """Return some of them."""
         return Points._make(each[which] for each in self)
+
+    @property
+    def axes(self) -> Array:
+        """The normal of each and two ways across, (points, 3, 3)."""
+        return np.concatenate([self.normals[:, None], frames(self.normals)], axis=1)
 
 
 class _Axis(NamedTuple):

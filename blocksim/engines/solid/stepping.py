@@ -29,8 +29,8 @@ from blocksim.engines.solid.between import (
 )
 from blocksim.engines.solid.bodies import Bodies, Place
 from blocksim.engines.solid.coulomb import TURNS, dilating, solve
-from blocksim.engines.solid.facing import frames
 from blocksim.engines.solid.meeting import Points, meet, near
+from blocksim.engines.solid.memory import Borne
 from blocksim.engines.solid.step import Step
 
 COARSE = 1e-5
@@ -86,7 +86,8 @@ class SolidBlocks:
         self._speeding = np.zeros_like(self._velocities)
         self._friction = FrictionBetween(problem, self.bodies.hulls)
         self._drawn = DrawnApart(self.bodies)
-        self._last, self._keys = np.zeros((0, 2, 3)), np.zeros(0, dtype=np.int64)
+        self._body = body_of(self.bodies.hulls)
+        self._borne = Borne.nothing(self._points(self._place, 0.0)[0])
         self._residual = self._penetration = 0.0
         self._balance = Balance(
             bodies.potential, lambda _, moved: bodies.kinetic(moved), self._place
@@ -126,13 +127,11 @@ class SolidBlocks:
         """Begin a motion with the forces at the points of joints, (points, 3)."""
         contacts, assembly = self._contacts, self.bodies.problem.assembly
         points, _ = self._points(self._place, 0.0)
-        axes = np.concatenate([points.normals[:, None], frames(points.normals)], axis=1)
         places = np.concatenate([each.points for each in assembly.joints]) / assembly.size
         pushes = np.einsum("pi,pij->pj", forces, contacts.axes[contacts.joint])
         after = np.array([sides_of(each)[1] for each in assembly.joints])[contacts.joint]
-        body = body_of(self.bodies.hulls)
-        self._keys, self._last = points.keys, np.zeros((len(points.keys), 2, 3))
-        sides = np.stack([body[points.before], body[points.after]], axis=1)
+        self._borne = Borne.nothing(points)
+        sides = np.stack([self._body[points.before], self._body[points.after]], axis=1)
         for at in range(len(points.keys)):
             near = np.linalg.norm(places - points.places[at], axis=1) < SAME
             for each in np.flatnonzero(near).tolist():
@@ -140,7 +139,7 @@ class SolidBlocks:
                 joint = assembly.joints[int(contacts.joint[each])]
                 if set(sides_of(joint)) == set(sides[at].tolist()):
                     sign = 1.0 if after[each] == sides[at, 1] else -1.0
-                    self._last[at, 0] = sign * axes[at] @ pushes[each]
+                    self._borne.forces[at] = sign * points.axes[at] @ pushes[each]
 
     def _move(self, step: float) -> None:
         """Go on for a time."""
@@ -175,7 +174,7 @@ class SolidBlocks:
         root = self.bodies.root
         scaled = root * velocities
         rate = first.along(scaled)[:, 0]
-        pressed = self._held(points)[:, 0, 0] > 0
+        pressed = self._borne.at(points, self._body)[:, 0] > 0
         shut = ((np.abs(rate) <= SLOWLY) & (first.gaps <= SHUT)) | (
             pressed & (first.gaps <= PRESSED)
         )
@@ -230,19 +229,12 @@ class SolidBlocks:
         asked = bodies.asked(
             now.rows[at], now.sides[at], drift[at], bodies.pull(middle) + turning, friction[at]
         )
-        found = solve(asked, self._held(points)[at], turns)
-        self._last = np.zeros((len(points.gaps), 2, 3))
-        self._last[at] = np.stack([found.forces, asked.velocities(found.x)], axis=1)
-        self._keys = points.keys
+        borne = self._borne.at(points, self._body)[at]
+        found = solve(asked, borne, turns)
+        self._borne = Borne.nothing(points)
+        self._borne.forces[at] = found.forces
         self._residual = float(np.maximum(self._residual, found.residual))
         self._speeding = found.x.reshape(-1, 6) / bodies.root
-
-    def _held(self, points: Points) -> Array:
-        """Return forces and velocities of the last step at these points, 0 at new ones."""
-        found = np.zeros((len(points.gaps), 2, 3))
-        _, was, now = np.intersect1d(self._keys, points.keys, return_indices=True)
-        found[now] = self._last[was]
-        return found
 
     def _points(self, place: Place, step: float) -> tuple[Points, Array]:
         """Find the points of contact about a place, and the friction there."""
@@ -276,8 +268,7 @@ class SolidBlocks:
         owner = self.bodies.hulls.owner
         before, after = owner[points.before], owner[points.after]
         turned = there.turns[before] @ found.turns[before].transpose(0, 2, 1)
-        axes = np.concatenate([points.normals[:, None], frames(points.normals)], axis=1)
-        axes = np.matmul(axes, turned.transpose(0, 2, 1))
+        axes = np.matmul(points.axes, turned.transpose(0, 2, 1))
         return axes, carried(points.places, after, found, there)
 
     def _seen(self, points: Points, found: Place, there: Place) -> Seen:

@@ -15,8 +15,10 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, ObservedJoint
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.limit.resultants import Resultants
 from blocksim.limit.space.cones import Answer
 from blocksim.limit.space.contacts import Contacts, solved
+from blocksim.limit.space.resultants import resultants_in_space
 
 BALANCED = 1e-12
 """Of each block's own weight: forces and moments that may be left over."""
@@ -100,6 +102,12 @@ class SpatialEquilibrium:
         sums = np.zeros((len(self._contacts.problem.assembly.joints), 3))
         np.add.at(sums, self._contacts.joint, each)
         return sums
+
+    @cached_property
+    def resultants(self) -> Resultants | None:
+        """What each joint carries; None where there is no equilibrium."""
+        forces = self.point_forces
+        return None if forces is None else resultants_in_space(self._contacts.problem, forces)
 
     @cached_property
     def mechanism(self) -> Array | None:

@@ -13,6 +13,8 @@ const address = (() => {
       ...(state.lesson ? { lesson: state.lesson } : {}),
       ...(state.embed ? { embed: "yes" } : {}),
       alpha: plain(state.halfAngle / DEGREE), mu: plain(state.mu), eta: plain(state.eta),
+      ...(state.load ? { load: `${plain(state.load.share)}_${plain(state.load.place)}` } : {}),
+      ...(state.fill ? { fill: plain(state.fill) } : {}),
       n: state.voussoirs, arch: state.asBuilt ? "built" : "continuous", weight: state.weight, view: state.view,
     }).toString();
 
@@ -28,6 +30,10 @@ const address = (() => {
     if (change.halfAngle !== undefined) change.halfAngle *= DEGREE;
     take("eta", "eta", Number(said.get("eta")));
     take("at", "at", Number(said.get("at")));
+    take("fill", "fill", Number(said.get("fill")));
+    const [share, place] = (said.get("load") ?? "").split("_").map(Number);
+    const within = (value, [least, most]) => value >= least && value <= most;
+    if (said.has("load") && within(share, ranges.share) && within(place, ranges.place)) change.load = { place, share };
     take("lesson", "lesson", Math.round(Number(said.get("lesson"))));
     change.embed = said.get("embed") === "yes";
     take("n", "voussoirs", Math.round(Number(said.get("n"))));

@@ -11,6 +11,11 @@ const archPicture = (() => {
   const FORCELESS = 1e-9;
   const SAMPLES = 240;
   const SLIVER = 1e-9; // angle that no voussoir is thinner than
+  const [SHORTEST, LONGER, MIDDLING] = [0.14, 0.5, 0.1]; // lengths of an arrow over r, and the load in the middle between them
+  const [EDGE, MOST] = [0.99, 10]; // farthest from the crown over half the width, and largest load
+  const FRESH = 0.05; // load, and fill over r, as they come from the corner
+  const TURNLESS = 1e-6; // rate of rotation that counts as none
+  const VERGE = 1e-7; // margin that hides in rounding
 
   const at = (angle, radius) => [SCALE * radius * Math.sin(angle), -SCALE * radius * Math.cos(angle)];
 
@@ -20,14 +25,15 @@ const archPicture = (() => {
     return pathOf([...angles.map((a) => at(a, outer)), ...angles.reverse().map((a) => at(a, inner))]) + "Z";
   }
 
-  /** Draw an arch. Returns a function that moves its pieces, by a share of `amount` at the
-      springing, 0 for one that stands. */
-  function draw(picture, { state, voussoirs, balance, joints, amount, reach }) {
-    const { halfAngle, eta, mu, weight } = state;
-    const faces = amount ? mechanism.pieces(joints) : [[halfAngle, 0]];
+  /** Draw an arch, and what is laid on it. Returns a function that moves its pieces, by a share of
+      `amount` at the springing, 0 for one that stands. */
+  function draw(picture, looks) {
+    const { state, amount, reach } = looks;
+    const { halfAngle, eta } = state;
     const [inner, outer] = [1 - eta / 2, 1 + eta / 2];
     picture.replaceChildren();
-    const pixel = fit(picture, halfAngle, inner, outer, reach);
+    const pixel = fit(picture, state, inner, outer, reach);
+    if (state.fill) add(picture, "path", { d: above(state, outer), class: "fill" });
     const below = Math.min(SPRINGING * Math.min(halfAngle, 1), (Math.PI - halfAngle) * 0.7);
     const halves = [1, -1].map((side) => add(picture, "g", { transform: `scale(${side} 1)` }));
     for (const half of halves) {
@@ -35,6 +41,15 @@ const archPicture = (() => {
       add(half, "path", { d: abutment, class: "abutment" });
     }
     if (amount) add(picture, "path", { d: ring(halfAngle, -halfAngle, inner, outer), class: "ghost" });
+    const pose = looks.loaded ? pieces(picture, looks, inner, outer, pixel) : mirrored(picture, halves, looks, inner, outer, pixel);
+    handles(picture, state, outer, pixel);
+    return pose;
+  }
+
+  /** Draw the halves of an arch under its own weight, which move alike. */
+  function mirrored(picture, halves, { state, voussoirs, balance, joints, amount }, inner, outer, pixel) {
+    const { halfAngle, eta, mu, weight } = state;
+    const faces = amount ? mechanism.pieces(joints) : [[halfAngle, 0]];
     const groups = halves.map((half, side) => faces.map((piece) =>
       stones(add(half, "g"), voussoirs ? cut(piece, halfAngle, voussoirs, side) : forTheEye(piece, halfAngle), inner, outer)));
     const lines = add(picture, "g");
@@ -65,14 +80,140 @@ const archPicture = (() => {
     };
   }
 
-  /** Fit the picture to the arch and its motion. Returns the size of a pixel. */
-  function fit(picture, halfAngle, inner, outer, reach) {
+  /** Draw voussoirs of a loaded arch, each of which moves on its own. */
+  function pieces(picture, { loaded: { rest, falls, angles }, amount }, inner, outer, pixel) {
+    const groups = angles.slice(1).map((to, i) => {
+      const group = add(picture, "g");
+      add(group, "path", { d: ring(to, angles[i], inner, outer), class: `stone shade-${i % 3}` });
+      return group;
+    });
+    const line = add(picture, "path", { d: pathOf(rest.margin > -VERGE ? rest.line.map(({ angle, radius }) => at(angle, radius)) : []), class: "thrust" });
+    const marks = amount ? falls.joints.map((joint) => {
+      const group = add(picture, "g");
+      mark(group, joint, inner, outer, pixel);
+      return { group, piece: joint.joint - 1 };
+    }) : [];
+    return (share) => {
+      line.setAttribute("opacity", amount ? 1 - 0.6 * share : 1);
+      const places = groups.map((_, i) => (amount ? turned(falls.motions[i], share * amount) : ""));
+      groups.forEach((group, i) => group.setAttribute("transform", places[i]));
+      marks.forEach(({ group, piece }) => group.setAttribute("transform", places[piece] ?? ""));
+    };
+  }
+
+  /** A motion about the centre that its rates have. */
+  function turned([x, y, turn], amount) {
+    if (Math.abs(turn) < TURNLESS) return `translate(${SCALE * x * amount} ${-SCALE * y * amount})`;
+    return `rotate(${(-turn * amount * 180) / Math.PI} ${(-SCALE * y) / turn} ${(-SCALE * x) / turn})`;
+  }
+
+  /** Fill from the extrados to the road. */
+  function above({ halfAngle, fill }, outer) {
+    const angles = Array.from({ length: SAMPLES + 1 }, (_, i) => halfAngle * ((2 * i) / SAMPLES - 1));
+    const [[x]] = [at(halfAngle, outer)];
+    const road = -SCALE * (outer + fill);
+    return pathOf([...angles.map((angle) => at(angle, outer)), [x, road], [-x, road]]) + "Z";
+  }
+
+  /** Where a load acts and where its arrow begins, over r, y upwards. */
+  function arrowOf({ load, ...arch }, voussoirs, outer) {
+    const x = load.place * loaded.widthOf(arch, voussoirs);
+    const y = Math.sqrt(Math.max(0, outer ** 2 - x ** 2));
+    return { x, y, high: SHORTEST + (LONGER * load.share) / (load.share + MIDDLING) };
+  }
+
+  /** What may be dragged: the load and the road of the fill, or in a corner what they are dragged from. */
+  function handles(picture, state, outer, pixel) {
+    const { width, height, x: left, y: top } = picture.viewBox.baseVal;
+    const [x0, y0] = [left + (width - pixel * picture.clientWidth) / 2, top + (height - pixel * picture.clientHeight) / 2];
+    const handle = (kind, x, y) => add(picture, "g", { class: `lay ${kind}`, "data-lay": kind, transform: `translate(${x} ${y})` });
+    const grip = (group, [x, y, wide, high]) => add(group, "rect", { x, y, width: wide, height: high, class: "grip" });
+    const arrow = (group, high, words, aside = 1) => {
+      add(group, "path", { d: `M0 ${-high}V${-8 * pixel}` });
+      add(group, "path", { d: `M0 0L${5 * pixel} ${-10 * pixel}H${-5 * pixel}Z`, class: "head" });
+      const text = { x: aside * 8 * pixel, y: -high + 10 * pixel, "font-size": 13 * pixel, "text-anchor": aside > 0 ? "start" : "end" };
+      add(group, "text", text, words);
+      grip(group, [-14 * pixel, -high - 6 * pixel, 28 * pixel, high + 12 * pixel]);
+    };
+    if (state.load) {
+      const { x, y, high } = arrowOf(state, state.voussoirs, outer);
+      arrow(handle("load", SCALE * x, -SCALE * y), SCALE * high, `${+(100 * state.load.share).toPrecision(3)} %`, x > 0 ? -1 : 1);
+    } else arrow(handle("load idle", x0 + 20 * pixel, y0 + 44 * pixel), 34 * pixel, "load");
+    if (!loaded.takesFill(state.halfAngle)) return;
+    const road = (group, wide, words) => {
+      add(group, "path", { d: `M${-wide} 0H${wide}` });
+      if (words) add(group, "text", { x: -wide, y: 16 * pixel, "font-size": 13 * pixel }, words);
+      grip(group, [-wide - 6 * pixel, -14 * pixel, 2 * wide + 12 * pixel, 34 * pixel]);
+    };
+    if (state.fill) road(handle("fill-road", 0, -SCALE * (outer + state.fill)), SCALE * outer * Math.sin(state.halfAngle), "");
+    else road(handle("fill-road idle", x0 + 24 * pixel, y0 + 62 * pixel), 16 * pixel, "fill");
+  }
+
+  /** Lay a load or fill by dragging, with a mouse or a finger; `get` tells the state, `change` it. */
+  function listen(picture, get, change) {
+    let drag = null;
+    const wide = () => loaded.widthOf(get(), get().voussoirs);
+    const outer = () => 1 + get().eta / 2;
+    const beside = (x) => Math.abs(x) > 1.05 * wide();
+    /** The load whose arrow begins here; beside the arch or beneath it none. */
+    const load = ([x, y]) => {
+      const place = Math.min(EDGE, Math.max(-EDGE, x / wide()));
+      const high = y - Math.sqrt(Math.max(0, outer() ** 2 - (place * wide()) ** 2));
+      if (beside(x) || high < 0) return { load: null };
+      const share = Math.min(1, Math.max(0, (high - SHORTEST) / LONGER));
+      return { load: { place, share: Math.min(MOST, (MIDDLING * share) / (1 - share)) } };
+    };
+    const fill = ([, y]) => ({ fill: Math.min(1, Math.max(0, y - outer())) });
+    /** What comes from the corner has a size until it is dropped. */
+    const fresh = {
+      load: ([x]) => ({ load: beside(x) ? null : { place: Math.min(EDGE, Math.max(-EDGE, x / wide())), share: FRESH } }),
+      "fill-road": ([x, y]) => ({ fill: beside(x) ? 0 : Math.min(1, Math.max(FRESH, y - outer())) }),
+    };
+    const tailOf = (state) => {
+      const { x, y, high } = arrowOf(state, state.voussoirs, outer());
+      return [x, y + high];
+    };
+    picture.addEventListener("pointerdown", (event) => {
+      const [kind, idle] = event.target.closest("[data-lay]")?.dataset.lay.split(" ") ?? [];
+      if (!kind || event.button !== 0) return;
+      // The words above may change their height: places are those of the picture as it was grasped.
+      const matrix = picture.getScreenCTM().inverse();
+      const placeOf = ({ clientX, clientY }) => {
+        const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(matrix);
+        return [x / SCALE, -y / SCALE];
+      };
+      const start = placeOf(event);
+      const from = idle ? start : kind === "load" ? tailOf(get()) : [0, outer() + get().fill];
+      const lay = idle ? fresh[kind] : kind === "load" ? load : fill;
+      drag = (moved) => lay(placeOf(moved).map((value, i) => value + from[i] - start[i]));
+      picture.dataset.held = "";
+      picture.setPointerCapture(event.pointerId);
+    });
+    picture.addEventListener("pointermove", (event) => drag && change(drag(event)));
+    for (const end of ["pointerup", "pointercancel"]) picture.addEventListener(end, () => {
+      if (!drag) return;
+      drag = null;
+      delete picture.dataset.held;
+      change({});
+    });
+    // A load follows a finger; beside it the finger scrolls the page.
+    picture.addEventListener("touchstart", (event) => {
+      if (event.target.closest("[data-lay]")) event.preventDefault();
+    }, { passive: false });
+  }
+
+  /** Fit the picture to the arch, its motion and what lies on it. Returns the size of a pixel. */
+  function fit(picture, state, inner, outer, reach) {
+    const { halfAngle, fill, load } = state;
     const wide = halfAngle > Math.PI / 2 ? outer : outer * Math.sin(halfAngle);
     const low = Math.min(inner * Math.cos(halfAngle), outer * Math.cos(halfAngle));
     const rim = SCALE * (0.06 + reach);
-    const [x, y] = [SCALE * (wide + 0.04) + rim, SCALE * outer + rim * 0.6];
-    const [width, height] = [2 * x, y - SCALE * low + rim];
-    picture.setAttribute("viewBox", `${-x} ${-y} ${width} ${height}`);
+    const arrow = load ? arrowOf(state, state.voussoirs, outer) : { y: 0, high: 0 };
+    const high = Math.max(outer + fill, arrow.y + arrow.high);
+    const [x, y] = [SCALE * (wide + 0.04) + rim, SCALE * high + rim * 0.6];
+    // While something is dragged the picture stays as it is.
+    if (picture.dataset.held === undefined) picture.setAttribute("viewBox", `${-x} ${-y} ${2 * x} ${y - SCALE * low + rim}`);
+    const { width, height } = picture.viewBox.baseVal;
     return Math.max(width / picture.clientWidth, height / picture.clientHeight);
   }
 
@@ -156,5 +297,5 @@ const archPicture = (() => {
     return [...stones.map((corners) => ({ corners, fixed: false })), ...abutments.map((corners) => ({ corners, fixed: true }))];
   }
 
-  return { draw, blocks };
+  return { draw, blocks, listen };
 })();

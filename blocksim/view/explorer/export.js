@@ -50,7 +50,7 @@ const exporting = (() => {
     const copy = picture.cloneNode(true);
     holder.append(copy);
     document.body.append(holder);
-    copy.querySelectorAll(".grip").forEach((grip) => grip.remove());
+    copy.querySelectorAll(".grip, .idle").forEach((grip) => grip.remove());
     const pixel = 1 / copy.getScreenCTM().a;
     const elements = [...copy.querySelectorAll("*")];
     const styles = elements.map((element) => settle(element, pixel));

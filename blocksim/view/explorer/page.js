@@ -16,11 +16,14 @@
   const FEW = 60; // most voussoirs of the slider; beyond is the continuous arch
   const CLOSER = 1.6; // times the map is larger after a click on +
   const NEAR = 12; // pixels within which a result is meant
-  const RANGES = { alpha: [1, 178], mu: [0.001, 1000], eta: [1e-6, 2], voussoirs: [3, 10000], at: [0, 1], lesson: [1, lesson.count] }; // of arches
+  const RANGES = { alpha: [1, 178], mu: [0.001, 1000], eta: [1e-6, 2], voussoirs: [3, 10000], at: [0, 1], lesson: [1, lesson.count],
+    fill: [0, 1], place: [-0.99, 0.99], share: [0, 10] }; // of arches
   const ON_MAP = { mu: [0.01, data.largestMu], eta: [1e-4, 2] };
 
   const find = (id) => document.getElementById(id);
-  const FIRST = { halfAngle: null, mu: 1.2, eta: 0.3, weight: "centreline", voussoirs: 27, asBuilt: false, view: "whole", at: null, lesson: 0, embed: false };
+  const FIRST = { halfAngle: null, mu: 1.2, eta: 0.3, weight: "centreline", voussoirs: 27, asBuilt: false, view: "whole", at: null, lesson: 0, embed: false,
+    load: null, fill: 0 };
+  const BARE = { load: null, fill: 0 };
   const state = { ...FIRST };
   let lastFriction = data.largestMu; // that was not infinite
   let frame, layer, drawn, seen, setPose;
@@ -58,6 +61,10 @@
   function update(change) {
     Object.assign(state, change);
     if (state.mu < Infinity) lastFriction = state.mu;
+    // What lies on it lies on voussoirs.
+    if (!loaded.takesFill(state.halfAngle)) state.fill = 0;
+    if (change.asBuilt === false) Object.assign(state, BARE);
+    if (state.load || state.fill) state.asBuilt = true;
     address.write(state);
     if (drawing) return;
     drawing = true;
@@ -70,7 +77,9 @@
   function show() {
     const both = { continuous: assess(state, false), built: assess(state, true) };
     seen = state.asBuilt ? both.built : both.continuous;
-    const verdict = seen.verge ? "undecided" : seen.stands ? "stands" : "collapses";
+    const bare = verdictOf(seen);
+    if (state.load || state.fill) seen = { ...seen, ...underLoad() };
+    const verdict = verdictOf(seen);
     const moves = (!seen.stands || seen.verge) && seen.joints.length > 0;
     put("verdict", words.headline(state, seen));
     find("verdict").className = `verdict ${verdict}`;
@@ -80,11 +89,12 @@
     put("simulated", found.join(" "));
     find("simulated").hidden = !found.length;
     for (const [arch, known] of Object.entries(both)) showFigures(arch, known);
+    for (const id of ["bare-map", "bare-figures"]) find(id).hidden = !seen.loaded;
     if (drawn.weight !== state.weight || drawn.view !== state.view) drawMap();
     showControls();
-    drawMapPoint(verdict);
+    drawMapPoint(bare);
     const reach = MOVED * Math.min(1, 1.2 * Math.sin(Math.min(state.halfAngle, Math.PI / 2)));
-    amount = moves ? mechanism.amountFor(seen.joints, state.eta, reach) : 0;
+    amount = !moves ? 0 : seen.loaded ? reach : mechanism.amountFor(seen.joints, state.eta, reach);
     setPose = archPicture.draw(find("arch"), { state, ...seen, amount, reach });
     setPose(moved);
     find("play").disabled = !moves;
@@ -97,9 +107,19 @@
     find("arch").setAttribute("aria-label", `${parameters()}. ${words.headline(state, seen)}. ${words.ofJoints(state, seen)}`);
   }
 
+  const verdictOf = ({ verge, stands }) => (verge ? "undecided" : stands ? "stands" : "collapses");
+
+  /** What is known of the arch with what lies on it. */
+  function underLoad() {
+    const found = loaded.analyse(state, state.voussoirs);
+    const { margin } = found.rest;
+    const verge = Number.isNaN(margin) || Math.abs(margin) < ON_THE_VERGE;
+    return { loaded: found, verge, stands: margin > 0, joints: found.falls.joints };
+  }
+
   const parameters = () =>
     `α = ${degrees(state.halfAngle)}, μ = ${number(state.mu)}, η = ${number(state.eta)}, ` +
-    `${words.which(seen.voussoirs)}, weight ${state.weight === "sector" ? "of true sectors" : "along the centreline"}`;
+    `${words.which(seen.voussoirs)}, weight ${state.weight === "sector" ? "of true sectors" : "along the centreline"}${words.laid(state, seen)}`;
 
   function put(id, text) {
     const line = text.replace(/\s+/g, " ");
@@ -150,6 +170,12 @@
     find("nearer").disabled = per() < 1.01 / 16;
     find("farther").disabled = state.view === "whole";
     find("weight").value = state.weight;
+    for (const [id, { of }] of Object.entries(LAID)) {
+      const value = +of(state).toPrecision(5);
+      find(id).value = value;
+      if (document.activeElement !== find(`${id}-number`)) find(`${id}-number`).value = value;
+    }
+    for (const id of ["fill", "fill-number"]) find(id).disabled = !loaded.takesFill(state.halfAngle);
     find("least").disabled = !seen.critical.eta;
     const off = !frame.shows(state.mu, state.eta);
     find("off-view").hidden = !off;
@@ -223,17 +249,33 @@
   /** Where the slider stands: to the middle the arch gets thinner, down to its least thickness; beyond, it falls. */
   function showScrubber() {
     const { eta } = seen.critical;
-    const spare = eta ? within([0, 1], state.eta / eta - 1) : 0;
+    const most = mostHere();
+    const spare = seen.loaded ? (most ? within([0, 1], 1 - state.load.share / most) : 0) : eta ? within([0, 1], state.eta / eta - 1) : 0;
     const slider = find("scrub");
     slider.value = amount > 0 ? 0.5 + moved / 2 : 0.5 - spare / 2;
-    slider.disabled = eta === 0 || (eta === null && !amount);
-    slider.setAttribute("aria-valuetext", amount > 0 ? `falls, ${Math.round(100 * moved)} % of the way` : `${Math.round(100 * spare)} % thicker than needed`);
+    slider.disabled = !amount && (seen.loaded ? !most : !eta);
+    const [first, last] = seen.loaded ? ["no load", "the most"] : ["thick", "least"];
+    put("scrub-first", first);
+    put("scrub-middle", last);
+    const rests = seen.loaded ? `${Math.round(100 * (1 - spare))} % of what it bears` : `${Math.round(100 * spare)} % thicker than needed`;
+    slider.setAttribute("aria-valuetext", amount > 0 ? `falls, ${Math.round(100 * moved)} % of the way` : rests);
+  }
+
+  /** The largest load at its place; null where there is none, or no largest. */
+  function mostHere() {
+    const factor = seen.loaded?.bears?.factor;
+    return factor > 0 && factor < Infinity ? factor : null;
   }
 
   function scrub(value) {
     const { eta } = seen.critical;
     moved = Math.max(0, 2 * value - 1);
     setPlaying(false);
+    if (seen.loaded) {
+      const { load } = state;
+      const share = !mostHere() ? load?.share : value < 0.5 ? 2 * value * mostHere() : Math.max(load.share, mostHere());
+      return update({ at: moved, load: load && { ...load, share } });
+    }
     const least = eta === null ? state.eta : eta;
     update({ at: moved, eta: value < 0.5 ? Math.min(2, least * (2 - 2 * value)) : Math.min(state.eta, least) });
   }
@@ -245,7 +287,7 @@
     const eta = arch.eta === "least" ? theory.leastThickness(arch.halfAngle, arch.mu, arch.weight).eta : arch.eta;
     moved = arch.at ?? (still.matches ? 1 : 0);
     setPlaying(arch.at === undefined && !still.matches);
-    update({ ...arch, eta, at: arch.at ?? null });
+    update({ ...BARE, ...arch, eta, at: arch.at ?? null });
   }
 
   function learn(step) {
@@ -282,7 +324,7 @@
   }
 
   const chooseResult = (row) => update({
-    mu: row.mu ?? Infinity, eta: row.eta, halfAngle: row.alpha * DEGREE, weight: row.weight,
+    ...BARE, mu: row.mu ?? Infinity, eta: row.eta, halfAngle: row.alpha * DEGREE, weight: row.weight,
     voussoirs: row.voussoirs, asBuilt: true,
   });
 
@@ -449,7 +491,26 @@
     });
   }
 
+  /** What may lie on the arch: how it is read of a state, and put into it. */
+  const LAID = {
+    press: { range: "share", of: ({ load }) => load?.share ?? 0, as: (share) => ({ load: share || state.load ? { place: state.load?.place ?? 0, share } : null }) },
+    place: { range: "place", of: ({ load }) => load?.place ?? 0, as: (place) => ({ load: { share: state.load?.share ?? 0, place } }) },
+    fill: { range: "fill", of: ({ fill }) => fill, as: (fill) => ({ fill }) },
+  };
+
   function listenToControls() {
+    archPicture.listen(find("arch"), () => state, (change) => update(change));
+    for (const [id, { range, as }] of Object.entries(LAID)) {
+      const box = find(`${id}-number`);
+      [box.min, box.max] = RANGES[range];
+      box.title = `from ${box.min} to ${box.max}`;
+      for (const input of [find(id), box]) input.addEventListener("input", () => {
+        const value = input.valueAsNumber;
+        if (within(RANGES[range], value) === value) update(as(value));
+      });
+      box.addEventListener("blur", () => update({}));
+    }
+    find("unload").addEventListener("click", () => update(BARE));
     const set = {
       alpha: (value) => ({ halfAngle: value * DEGREE }), mu: (mu) => ({ mu }), eta: (eta) => ({ eta }),
     };
@@ -523,6 +584,7 @@
   }
 
   arrive();
+  find("acts").open = Boolean(state.load || state.fill);
   drawMap();
   show();
   listenToMap();

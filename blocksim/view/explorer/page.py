@@ -40,8 +40,8 @@ from blocksim.view.templates import environment_of
 HERE = Path(__file__).parent
 SCRIPTS = (
     "theory.js", "built.js", "mechanism.js", "svg.js", "map.js", "arch.js", "words.js",
-    "address.js", "export.js", "lesson.js", "programme.js", "blocks.js", "ownpicture.js",
-    "own.js", "page.js",
+    "address.js", "export.js", "lesson.js", "programme.js", "loaded.js", "blocks.js",
+    "ownpicture.js", "own.js", "page.js",
 )  # fmt: skip
 STRUCTURES: dict[str, Maker] = {
     "portal": Portal(

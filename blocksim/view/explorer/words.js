@@ -23,7 +23,18 @@ const wordsWith = (modes) => {
   /** Which arch: the continuous one, or its voussoirs. */
   const which = (voussoirs) => (voussoirs ? `${voussoirs} voussoirs as built` : "the continuous arch");
 
+  /** What lies on the arch. */
+  const onIt = ({ load, fill }) => [load && "load", fill && "fill"].filter(Boolean).join(" and ");
+
+  /** The same in numbers. */
+  const laid = ({ load, fill }, { loaded }) => (loaded
+    ? `${load ? `, load of ${number(load.share)} weights at x = ${number(loaded.place)} r` : ""}${fill ? `, fill ${number(fill)} r over the crown` : ""}` : "");
+
   function headline(state, seen) {
+    if (seen.loaded) {
+      const unknown = Number.isNaN(seen.loaded.rest.margin) ? "Undecided" : "On the verge";
+      return `${seen.verge ? unknown : seen.stands ? "Stands" : "Collapses"}: ${seen.voussoirs} voussoirs under ${onIt(state)}`;
+    }
     const { critical, verge, stands, slides, mode, voussoirs } = seen;
     const arch = which(voussoirs);
     if (critical.eta === 0) return `Stands: ${arch} stand at any thickness`;
@@ -49,7 +60,19 @@ const wordsWith = (modes) => {
     return `${verdict}, ${percent(over)} ${stands ? "to spare" : "short"}`;
   }
 
+  /** What an arch bears where its load is. */
+  function underLoad(state, { verge, stands, loaded: { rest, bears } }) {
+    const fits = Number.isNaN(rest.margin) ? "Rounding hides whether it stands."
+      : verge ? "Its line of thrust has nothing to spare."
+      : stands ? "A line of thrust fits inside it, and friction holds every joint." : "No line of thrust fits inside it that friction could hold.";
+    if (!bears) return fits;
+    const most = { null: "No load here lets it stand.", Infinity: "No load here brings it down.", NaN: "Rounding hides what it bears here." }[bears.factor]
+      ?? `Here it bears ${decimals(100 * bears.factor, 4)} % of its own weight; with more, it falls as the slider shows.`;
+    return `${fits} ${!stands && !verge && bears.factor > state.load.share ? "It needs a larger load here to stand." : ""} ${most}`;
+  }
+
   function because(state, seen) {
+    if (seen.loaded) return underLoad(state, seen);
     const { critical, balance, verge, stands, slides, mode, friction, voussoirs } = seen;
     if (slides) {
       return `Springings and inner joints are about to slide, ${named(mode)}. With less friction, or
@@ -85,12 +108,17 @@ const wordsWith = (modes) => {
     return `${needs} ${falls}${remedy}`;
   }
 
+  const SLIDES = { out: true, in: true };
   const KINDS = {
     extrados: "turns about its extrados", intrados: "turns about its intrados",
     out: "slides outwards", in: "slides inwards", parts: "parts",
   };
 
-  function ofJoints(state, { joints, critical, voussoirs }) {
+  function ofJoints(state, { joints, critical, voussoirs, loaded }) {
+    if (loaded) {
+      const acts = joints.map(({ angle, kind }) => `the joint at ${number(angle / DEGREE)}° ${kind in SLIDES ? "slides" : KINDS[kind]}`);
+      return acts.length ? `Mechanism: ${acts.join(", ")}.` : "";
+    }
     if (!joints.length) return "No mechanism to show: the joints that act form none of the seven modes.";
     const told = joints.map(({ angle, kind }) => {
       const where = angle === 0 ? "the crown" : Math.abs(angle - state.halfAngle) < 1e-12
@@ -104,5 +132,5 @@ const wordsWith = (modes) => {
   /** What engines found at just this point. */
   const ofResult = (row) => `Simulated: ${row.scenario}, by ${row.engine}, n = ${row.voussoirs}: ${row.found}.`;
 
-  return { number, degrees, shortly, which, headline, shortVerdict, because, ofJoints, ofResult };
+  return { number, degrees, shortly, which, headline, shortVerdict, because, ofJoints, ofResult, laid };
 };

@@ -13,7 +13,7 @@ main({
   dimensions: [2],
   settings: {
     documented: ["its defaults: 1/60 s, 4 velocity and 6 position iterations, slop 0.05", { step: 1 / 60 }],
-    best: ["1/960 s, 50 and 50 iterations, slop 0.001", { step: 1 / 960, sweeps: 50, slop: 0.001 }],
+    best: ["1/240 s, 20 and 20 iterations, frictionStatic 5", { step: 1 / 240, sweeps: 20, still: 5 }],
   },
   world(scene, settings) {
     const engine = Engine.create({ gravity: { x: 0, y: 0 } });
@@ -25,13 +25,14 @@ main({
       add(given) {
         const parts = given.polygons.map((polygon) => local(given, polygon).map(([x, y]) => ({ x: SCALE * x, y: -SCALE * y })));
         const options = { isStatic: given.fixed, friction: scene.friction, frictionAir: 0, restitution: 0 };
-        if (settings.slop) options.slop = settings.slop;
+        if (settings.still) options.frictionStatic = settings.still;
         const made = parts.map((part) => {
           const middle = Vertices.centre(Vertices.clockwiseSort(part.map((each) => ({ ...each }))));
           return Bodies.fromVertices(middle.x, middle.y, [part], options);
         });
         const body = made.length > 1 ? Body.create({ ...options, parts: made }) : made[0];
-        body.parts.forEach((part) => { part.friction = scene.friction; }); // What is static has 1.
+        // What is static has a friction of 1.
+        body.parts.forEach((part) => { part.friction = scene.friction; part.frictionStatic = settings.still ?? 0.5; });
         const [x, y] = given.centre ?? [0, 0];
         Body.translate(body, { x: SCALE * x, y: -SCALE * y });
         if (!given.fixed) {

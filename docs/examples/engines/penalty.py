@@ -1,6 +1,6 @@
-"""An engine of penalty springs, in numpy: written from the page on scenes alone.
+"""An engine of penalty springs in the plane, in numpy: written from the page on scenes alone.
 
-`python penalty.py SCENES ANSWERS.jsonl` answers the planar scenes in a folder.
+`python penalty.py SCENES ANSWERS.jsonl` answers the planar scenes of a folder.
 """
 
 import json
@@ -13,88 +13,62 @@ import numpy as np
 STIFFNESS, SLIP, STEP, NEAR = 3e8, 1e-3, 2e-4, 1e-4  # N/m, m/s, s, m
 
 
-def turned(vectors, angles):
-    """Return vectors, each turned by its angle."""
-    (x, y), cos, sin = vectors.T, np.cos(angles), np.sin(angles)
-    return np.stack([cos * x - sin * y, sin * x + cos * y], 1)
-
-
 def answer(scene):
-    """Return poses at the scene's times."""
-    bodies, starts = scene["bodies"], [0]
-    shapes = [(at, shape) for at, each in enumerate(bodies) for shape in each["polygons"]]
-    for _, shape in shapes:
-        starts.append(starts[-1] + len(shape))
-    # All corners in one array: whose they are, and which comes next around.
-    body = np.repeat([at for at, _ in shapes], np.diff(starts))
-    polygon = np.repeat(np.arange(len(shapes)), np.diff(starts))
-    following = np.arange(1, starts[-1] + 1)
-    following[np.array(starts[1:]) - 1] = starts[:-1]
-    starts, fixed = starts[:-1], np.array([each["fixed"] for each in bodies])
-    apart = (body[:, None] == body) | (fixed[body][:, None] & fixed[body])
-    mass = np.array([[each.get(key, np.inf) for key in ("mass", "inertia")] for each in bodies])
-    mass = mass[:, [0, 0, 1]]
-    pose = np.array([[*each.get("centre", (0, 0)), 0.0] for each in bodies])
-    speed = np.array(
-        [[*each.get("velocity", (0, 0)), each.get("spin", 0.0)] for each in bodies]
-    )
-    local = np.concatenate([shape for _, shape in shapes]) - pose[body, :2]
-    damping = np.sqrt(STIFFNESS * mass[~fixed, 0].mean())
-    pull = np.zeros_like(mass)
-    pull[~fixed, :2] = mass[~fixed, :2] * scene["gravity"]
-    place = {each["name"]: at for at, each in enumerate(bodies)}
-    pushed = np.array([place[each["body"]] for each in scene["pushes"]], int)
-    push = np.array([each["force"] for each in scene["pushes"]]).reshape(-1, 2)
-    points = np.array([each["point"] for each in scene["pushes"]]).reshape(-1, 2)
-    levers = points - pose[pushed, :2]
-    found, now = [], 0
-    for until in scene["times"]:
-        while now < round(until / STEP):
-            now += 1
-            at = pose[body, :2] + turned(local, pose[body, 2])
-            side = at[following] - at
-            long = np.hypot(*side.T)
-            along = side / long[:, None]
-            out = np.stack([along[:, 1], -along[:, 0]], 1)
+    """Return poses at the scene's times; points and vectors are complex numbers."""
+    bodies, x_y = scene["bodies"], np.array([1, 1j])
+    fixed = np.array([each["fixed"] for each in bodies])
+    mass = np.array([b.get("mass", np.inf) for b in bodies])
+    inertia = np.array([b.get("inertia", np.inf) for b in bodies])
+    place = np.array([b.get("centre", [0, 0]) for b in bodies]) @ x_y
+    speed = np.array([b.get("velocity", [0, 0]) for b in bodies]) @ x_y
+    spin = np.array([b.get("spin", 0.0) for b in bodies])
+    angle, weight = np.zeros(len(bodies)), np.where(fixed, 0, mass) * (scene["gravity"] @ x_y)
+    polygons = [np.array(shape) @ x_y for each in bodies for shape in each["polygons"]]
+    polygon = np.repeat(np.arange(len(polygons)), [len(each) for each in polygons])
+    first = np.unique(polygon, return_index=True)[1]
+    owner = np.repeat(np.arange(len(bodies)), [sum(map(len, b["polygons"])) for b in bodies])
+    sides = np.concatenate([np.roll(each, -1) - each for each in polygons])
+    arms = np.concatenate(polygons) - place[owner]
+    other = (owner[:, None] != owner) & ~(fixed[owner][:, None] & fixed[owner])
+    names, pushes = [each["name"] for each in bodies], scene["pushes"]
+    pushed = np.array([names.index(each["body"]) for each in pushes], int)
+    push = np.array([each["force"] for each in pushes]).reshape(-1, 2) @ x_y
+    lever = np.array([each["point"] for each in pushes]).reshape(-1, 2) @ x_y - place[pushed]
+    damping, found = np.sqrt(STIFFNESS * mass[~fixed].mean()), []
+    for steps in np.diff(np.rint(np.array(scene["times"]) / STEP).astype(int), prepend=0):
+        for _ in range(steps):
+            turn = np.exp(1j * angle)
+            at, along = place[owner] + (turn[owner] * arms), turn[owner] * sides / abs(sides)
+            # Each corner (rows) seen from each side: real along it, imaginary into its body.
+            seen = (at[:, None] - at) * along.conj()
             # Two polygons meet at the side beyond which the other reaches least.
-            beyond = at @ out.T - (at * out).sum(1)
-            on = at @ along.T - (at * along).sum(1)
-            reach = np.minimum.reduceat(beyond, starts, axis=0)
-            gap = np.maximum.reduceat(reach, starts, axis=1)
+            reach = -np.maximum.reduceat(seen.imag, first, axis=0)
+            gap = np.maximum.reduceat(reach, first, axis=1)
             meets = (reach == gap[:, polygon]) & ((gap < 0) & (gap >= gap.T - NEAR))[:, polygon]
-            inside = (beyond < 0) & (on > -NEAR) & (on < long + NEAR)
-            i, j = np.nonzero(meets[polygon] & ~apart & inside)
-            a, b = body[i], body[j]
-            both = (a, at[i] - pose[a, :2], 1), (b, at[i] - pose[b, :2], -1)
-            slip = sum(
-                sign * (speed[own, :2] + speed[own, 2:] * np.stack([-arm[:, 1], arm[:, 0]], 1))
-                for own, arm, sign in both
-            )
-            press = np.maximum(0, -STIFFNESS * beyond[i, j] - damping * (slip * out[j]).sum(1))
-            rub = -scene["friction"] * press * np.clip((slip * along[j]).sum(1) / SLIP, -1, 1)
-            force = press[:, None] * out[j] + rub[:, None] * along[j]
-            total, acting = pull.copy(), [(own, arm, sign * force) for own, arm, sign in both]
-            for own, arm, acts in (*acting, (pushed, turned(levers, pose[pushed, 2]), push)):
-                moment = arm[:, 0] * acts[:, 1] - arm[:, 1] * acts[:, 0]
-                np.add.at(total, own, np.column_stack([acts, moment]))
-            speed += STEP * total / mass
-            pose += STEP * speed
-        found.append(pose[~fixed].tolist())
+            within = (seen.real > -NEAR) & (seen.real < abs(sides) + NEAR) & (seen.imag > 0)
+            corner, side = np.nonzero(meets[polygon] & within & other)
+            a, b, along = owner[corner], owner[side], along[side]
+            arm_a, arm_b = at[corner] - place[a], at[corner] - place[b]
+            slip = speed[a] - speed[b] + 1j * (spin[a] * arm_a - spin[b] * arm_b)
+            slip = slip * along.conj()
+            press = np.maximum(0, STIFFNESS * seen.imag[corner, side] + damping * slip.imag)
+            force = (-scene["friction"] * np.clip(slip.real / SLIP, -1, 1) - 1j) * press * along
+            total, moment = weight.copy(), np.zeros(len(bodies))
+            acting = (a, force, arm_a), (b, -force, arm_b), (pushed, push, turn[pushed] * lever)
+            for body, acts, arm in acting:
+                np.add.at(total, body, acts)
+                np.add.at(moment, body, (arm.conj() * acts).imag)
+            speed, spin = speed + STEP * total / mass, spin + STEP * moment / inertia
+            place, angle = place + STEP * speed, angle + STEP * spin
+        found.append(np.column_stack([place.real, place.imag, angle])[~fixed].tolist())
     return found
 
 
-def main(folder, out):
-    """Answer the scenes of a folder."""
-    settings = f"{STIFFNESS:g} N/m, steps of {STEP:g} s"
-    said = {"format": "blocksim answers 1", "engine": "penalty springs", "version": "2"}
-    lines = [json.dumps(said | {"settings": settings})]
-    for path in sorted(Path(folder).glob("*.json")):
+head = {"format": "blocksim answers 1", "engine": "penalty springs", "version": "3"}
+with Path(sys.argv[2]).open("w") as file:
+    print(json.dumps(head | {"settings": f"{STIFFNESS:g} N/m, steps of {STEP:g} s"}), file=file)
+    for path in sorted(Path(sys.argv[1]).glob("*.json")):
         scene, started = json.loads(path.read_text()), time.perf_counter()
         if scene["dimensions"] == 2:
             line = {"scene": scene["name"], "poses": answer(scene)}
-            lines.append(json.dumps(line | {"seconds": time.perf_counter() - started}))
-    Path(out).write_text("\n".join(lines) + "\n")
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])
+            print(json.dumps(line | {"seconds": time.perf_counter() - started}), file=file)

@@ -13,7 +13,8 @@ class Engine:
     SETTINGS = {
         "documented": ("its defaults: 1/240 s, 50 iterations, hulls", {"step": 1 / 240}),
         "best": (
-            "1/240 s, 200 iterations, residual 0, contactSlop 1e-5, maximal coordinates",
+            "1/240 s, 200 iterations, residual 0, contactSlop and collisionMargin 1e-5, "
+            "maximal coordinates, no damping",
             {"step": 1 / 240, "sweeps": 200},
         ),
     }
@@ -52,7 +53,9 @@ class Engine:
                 body, -1, lateralFriction=math.sqrt(self.scene["friction"]), restitution=0
             )
             if self.best:
-                bullet.changeDynamics(body, -1, linearDamping=0, angularDamping=0)
+                bullet.changeDynamics(
+                    body, -1, linearDamping=0, angularDamping=0, collisionMargin=1e-5
+                )
         if not given["fixed"]:
             about = given["inertia"]
             inertia = (

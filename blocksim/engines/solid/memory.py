@@ -1,0 +1,52 @@
+"""What contacts bore in the last step, for the points of this one."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from blocksim.blocks.assembly import Array
+from blocksim.engines.solid.meeting import Points
+
+
+class Borne(NamedTuple):
+    """Points of a step, and the forces there, (points, 3), along their axes."""
+
+    points: Points
+    forces: Array
+
+    @classmethod
+    def nothing(cls, points: Points) -> Borne:
+        """Return no forces at points."""
+        return cls(points, np.zeros((len(points.gaps), 3)))
+
+    def at(self, points: Points, body: NDArray[np.int64]) -> Array:
+        """Return the forces at the points of the next step, (points, 3).
+
+        As a corner slides over the rim of a face its point ends, and others begin. What a
+        point bore that is no more goes on to the nearest one of the same two bodies.
+
+        `body`, (hulls,): Of which body each is part.
+        """
+        found = np.zeros((len(points.gaps), 3))
+        _, was, now = np.intersect1d(self.points.keys, points.keys, return_indices=True)
+        found[now] = self.forces[was]
+        lost = self.forces[:, 0] > 0
+        lost[was] = False
+        if not lost.any():
+            return found
+        left = self.points.at(lost)
+        were, are = (np.stack([body[each.before], body[each.after]]) for each in (left, points))
+        along, against = (
+            (were[:, :, None] == each[:, None]).all(axis=0) for each in (are, are[::-1])
+        )
+        apart = np.linalg.norm(left.places[:, None] - points.places[None], axis=2)
+        apart[~(along | against)] = np.inf
+        each = np.flatnonzero(np.isfinite(apart).any(axis=1))
+        nearest = apart[each].argmin(axis=1) if len(each) else each
+        pushes = np.einsum("pi,pij->pj", self.forces[lost][each], left.axes[each])
+        pushes[against[each, nearest]] *= -1.0
+        np.add.at(found, nearest, np.einsum("pij,pj->pi", points.axes[nearest], pushes))
+        return found
