@@ -1,13 +1,16 @@
 """Models of MuJoCo: blocks that touch at their joints, and blocks that may meet any other.
 
-While joints are joints only they are contacts: pairs of boxes named beforehand, for which
-alone friction has settings of its own. One face of each joint reaches beyond the other, as in
-`boxes`.
+While joints are joints only they are contacts: small balls at their corners, in the plane at
+both ends, each on a plate on the other block. A ball touches its plate and nothing else, by a
+pair that is named beforehand, for which alone friction has settings of its own: one point of
+contact, with a round cone.
 """
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -16,13 +19,17 @@ from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import require
 from blocksim.engines.base import FRICTION_CAP, Library
-from blocksim.engines.boxes import plate, uneven_depths
-from blocksim.engines.faces import reaching, sides_of
+from blocksim.engines.polyhedra import Touch, Touching
+from blocksim.engines.solid.bodies import Place
 from blocksim.engines.solids import Polygons, prism
 
 library: Any = Library("mujoco")
 
 TOLERANCE = 1e-14
+BALL = 0.02
+"""Radius of a ball, over the spread of a joint's corners."""
+ORDER = [3, 0, 1, 2]
+"""MuJoCo's quaternions begin with the scalar."""
 RUBBLE_STEP, RUBBLE_PERIOD = 5e-4, 2.0
 """MuJoCo's step once blocks may meet, and the period of contacts in such steps."""
 RUBBLE_SOFTNESS, RUBBLE_RATIO = 1e-3, 10.0
@@ -58,19 +65,69 @@ def with_body(spec: Any, mass: float, inertia: list[float], **where: list[float]
     )
 
 
-def let_touch(spec: Any, one: str, other: str, mu: float) -> None:
-    """Let two shapes touch, with a friction."""
-    friction = [min(float(mu), FRICTION_CAP)] * 2 + [0.0] * 3
-    spec.add_pair(geomname1=one, geomname2=other, condim=3, friction=friction)
+class Jointed(Touching, ABC):
+    """Bodies of a model that touch at the corners of joints.
 
+    `problem`.
+    `inertia`, (blocks, 6): Mass along each axis, and moments about a body's own.
+    """
 
-def compiled(spec: Any) -> Any:
-    """Return the model of joints that are contacts."""
-    spec.option.enableflags |= library.mjtEnableBit.mjENBL_DIAGEXACT
-    model = spec.compile()
-    # A box turned by next to nothing is as its body to MuJoCo, unless it is told.
-    model.geom_sameframe[:] = library.mjtSameFrame.mjSAMEFRAME_NONE
-    return model
+    problem: Problem[Any]
+    inertia: Array
+
+    @abstractmethod
+    def free(self) -> tuple[Any, list[Any]]:
+        """Return a model of bodies without shapes, and the bodies."""
+
+    def joined(self, reaches: Array | None = None) -> Any:
+        """Return a model of bodies that touch at the corners of joints.
+
+        `reaches`, (points,): How far each corner reaches into its plate [size].
+        """
+        spec, bodies = self.free()
+        bodies.append(spec.worldbody)
+        silent = {"contype": 0, "conaffinity": 0}
+        for touch, ways in zip(self.touches, self.at_joints(reaches), strict=True):
+            plate = touch.places.mean(axis=0) - touch.half[2] * touch.normal
+            centre, turn = self.within(touch.plate, plate, touch.axes)
+            bodies[touch.plate].add_geom(
+                name=f"plate {touch.joint}", type=library.mjtGeom.mjGEOM_BOX,
+                size=touch.half, pos=centre, quat=turn[ORDER].tolist(), **silent,
+            )  # fmt: skip
+            mu, ball = self.problem.friction[touch.joint], BALL * touch.spread
+            friction = [min(float(mu), FRICTION_CAP)] * 2 + [0.0] * 3
+            for at, (place, way) in enumerate(zip(touch.places, ways.tolist(), strict=True)):
+                centre, _ = self.within(
+                    touch.corners, place + (ball - way) * touch.normal, np.eye(3)
+                )
+                name = f"corner {touch.joint} {at}"
+                bodies[touch.corners].add_geom(
+                    name=name, type=library.mjtGeom.mjGEOM_SPHERE,
+                    size=[ball, 0.0, 0.0], pos=centre, **silent,
+                )  # fmt: skip
+                spec.add_pair(
+                    geomname1=f"plate {touch.joint}", geomname2=name,
+                    condim=3, friction=friction,
+                )  # fmt: skip
+        spec.option.enableflags |= library.mjtEnableBit.mjENBL_DIAGEXACT
+        model = spec.compile()
+        # A box turned by next to nothing is as its body to MuJoCo, unless it is told.
+        model.geom_sameframe[:] = library.mjtSameFrame.mjSAMEFRAME_NONE
+        return model
+
+    def ways(self, pressures: Array) -> Array:
+        """Return how far contacts give way, (points,): as their force, and what moves there.
+
+        `pressures`, (points,).
+        """
+        found, (centres, turns) = np.zeros_like(pressures), self.frames
+        for touch, free in zip(self.touches, self.at_joints(found), strict=True):
+            for index in {touch.plate, touch.corners} - {SUPPORT}:
+                arms = touch.places - centres[index]
+                about = np.cross(arms, touch.normal) @ turns[index]
+                inertia = self.inertia[index]
+                free[:] += 1 / inertia[0] + (about**2 / inertia[3:]).sum(axis=1)
+        return pressures * found
 
 
 def rubble_of(
@@ -93,15 +150,36 @@ def rubble_of(
     return spec.compile()
 
 
-class Planar(Polygons):
+class Planar(Polygons, Jointed):
     """The blocks of a problem in the plane as bodies that slide along x and y, and turn."""
 
     def __init__(self, problem: Problem) -> None:
         super().__init__(problem)
         self._built = self.assembly.built[:-1]
         self.masses: Array = self.assembly.masses.ravel()
+        centres = np.pad(self.assembly.built[:, :2], ((0, 0), (0, 1)))
+        self.frames = Place(centres, np.broadcast_to(np.eye(3), (len(centres), 3, 3)))
+        self.inertia = np.full((len(self._built), 6), np.inf)
+        self.inertia[:, [0, 1, 5]] = self.assembly.masses
 
-    def _bodies(self) -> tuple[Any, list[Any]]:
+    @cached_property
+    def touches(self) -> tuple[Touch, ...]:
+        """Both ends of each joint, which are one of a corner that rests on a face."""
+        joints, flat = self.assembly.joint_arrays, ((0, 0), (0, 1))
+        ends, normals = np.pad(joints.ends, ((0, 0), *flat)), np.pad(joints.normal, flat)
+        known = zip(self.assembly.sides.T.tolist(), joints.carrier, ends, normals, strict=True)
+        return tuple(
+            Touch.of(at, sides, -1.0 if carrier else 1.0, places, normal)
+            for at, (sides, carrier, places, normal) in enumerate(known)
+        )
+
+    def ways(self, pressures: Array) -> Array:
+        """Return how far contacts give way under pressures at both ends of each joint."""
+        corner = self.assembly.joint_arrays.is_corner[:, None]
+        even = np.where(corner, pressures.mean(axis=1, keepdims=True), pressures)
+        return super().ways(even.ravel())
+
+    def free(self) -> tuple[Any, list[Any]]:
         """Return a model of bodies that move in the plane, without shapes, and the bodies."""
         assembly = self.assembly
         size, spec = assembly.size, spec_of(self.problem.gravity, assembly.spatial_masses)
@@ -116,62 +194,9 @@ class Planar(Polygons):
             bodies.append(body)
         return spec, bodies
 
-    def joined(self, reaches: Array | None = None) -> Any:
-        """Return a model of bodies that touch where the assembly has joints.
-
-        `reaches`, (joints, 2): How far the sides of each joint reach into each other at its
-            ends [size].
-        """
-        assembly = self.assembly
-        spec, bodies = self._bodies()
-        centres = assembly.built[:, :2]
-        depth = np.append(uneven_depths(assembly), 2 * assembly.depths.max())
-        for k, pair in enumerate(sides_of(assembly)):
-            ends = assembly.joint_arrays.ends[k]
-            sides = pair if reaches is None else reaching(pair, ends, reaches[k])
-            for side in sides:
-                body = spec.worldbody if side.body == SUPPORT else bodies[side.body]
-                box = plate(side, float(depth[side.body]), centres[side.body], overlap=0.0)
-                x, y, z, w = box.quaternion
-                body.add_geom(
-                    name=f"joint {k}, block {side.body}",
-                    type=library.mjtGeom.mjGEOM_BOX,
-                    size=box.half,
-                    pos=box.centre,
-                    quat=[w, x, y, z],
-                    contype=0,
-                    conaffinity=0,
-                )
-            one, other = (f"joint {k}, block {side.body}" for side in sides)
-            let_touch(spec, one, other, self.problem.friction[k])
-        return compiled(spec)
-
-    def ways(self, pressures: Array) -> Array:
-        """Return how far contacts give way under pressures at both ends of each joint.
-
-        A contact gives way as its force, of which it has half, and as what is free to move.
-
-        Returns (joints, 2): Over what one gives way under the weight of a block that is free to
-            move.
-        """
-        assembly, joints = self.assembly, self.assembly.joint_arrays
-        free = np.zeros_like(pressures)
-        for bodies, every in zip(
-            (joints.before, joints.after), assembly.joint_arms, strict=True
-        ):
-            moves = bodies != SUPPORT
-            mass, _, inertia = assembly.masses[bodies[moves]].T[:, :, None]
-            arms, normal = every[moves], joints.normal[moves, None]
-            levers = arms[..., 0] * normal[..., 1] - arms[..., 1] * normal[..., 0]
-            free[moves] += 1 / mass + levers**2 / inertia
-        carried = pressures / 2
-        # A corner has one place, and all that it carries is shared by its four contacts.
-        carried[joints.is_corner] = pressures[joints.is_corner].sum(axis=1, keepdims=True) / 4
-        return carried * free
-
     def rubble(self) -> Any:
         """Return a model of the blocks as they are, what they stand on and the floor."""
-        spec, bodies = self._bodies()
+        spec, bodies = self.free()
         solids, half = self.solids, math.sqrt(0.5)
         polygons = [(bodies[index], polygon) for index, polygon in solids.moving]
         polygons += [(spec.worldbody, polygon) for polygon in solids.fixed]

@@ -1,7 +1,4 @@
-"""Blocks in space as bodies of MuJoCo: small balls at the corners of joints, on plates.
-
-Each ball touches its plate and nothing else: one point of contact, with a round cone.
-"""
+"""Blocks in space as bodies of MuJoCo."""
 
 from __future__ import annotations
 
@@ -12,30 +9,29 @@ from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.engines.mujocoblocks import (
-    compiled,
-    let_touch,
-    library,
+    ORDER,
+    Jointed,
     rubble_of,
     spec_of,
     with_body,
 )
 from blocksim.engines.polyhedra import Polyhedra
 
-BALL = 0.02
-"""Radius of a ball, over the spread of a joint's corners."""
-ORDER = [3, 0, 1, 2]
-"""MuJoCo's quaternions begin with the scalar."""
 
-
-class Spatial(Polyhedra):
+class Spatial(Polyhedra, Jointed):
     """The blocks of a problem in space as free bodies; see `mujocomotion`."""
 
     @property
-    def masses(self) -> Array:
-        """Inertia of each velocity: along the axes, and about a body's own."""
-        return self.bodies.inertia.ravel()
+    def inertia(self) -> Array:  # type: ignore[override]
+        """Mass along each axis, and moments about a body's own, (blocks, 6)."""
+        return self.bodies.inertia
 
-    def _spec(self) -> tuple[Any, list[Any]]:
+    @property
+    def masses(self) -> Array:
+        """The same of each velocity."""
+        return self.inertia.ravel()
+
+    def free(self) -> tuple[Any, list[Any]]:
         """Return a model of free bodies, without shapes, and the bodies."""
         spec, found = spec_of(self.problem.gravity, self.masses), list[Any]()
         turns = self.quaternions[:, ORDER]
@@ -46,48 +42,9 @@ class Spatial(Polyhedra):
             found.append(body)
         return spec, found
 
-    def joined(self, reaches: Array | None = None) -> Any:
-        """Return a model of bodies that touch at the corners of joints.
-
-        `reaches`, (points,): How far each corner reaches into its plate [size].
-        """
-        spec, bodies = self._spec()
-        bodies.append(spec.worldbody)
-        silent = {"contype": 0, "conaffinity": 0}
-        for touch, ways in zip(self.touches, self.at_joints(reaches), strict=True):
-            plate = touch.places.mean(axis=0) - touch.half[2] * touch.normal
-            centre, turn = self.within(touch.plate, plate, touch.axes)
-            bodies[touch.plate].add_geom(
-                name=f"plate {touch.joint}", type=library.mjtGeom.mjGEOM_BOX,
-                size=touch.half, pos=centre, quat=turn[ORDER].tolist(), **silent,
-            )  # fmt: skip
-            mu, ball = self.problem.friction[touch.joint], BALL * touch.spread
-            for at, (place, way) in enumerate(zip(touch.places, ways.tolist(), strict=True)):
-                centre, _ = self.within(
-                    touch.corners, place + (ball - way) * touch.normal, np.eye(3)
-                )
-                name = f"corner {touch.joint} {at}"
-                bodies[touch.corners].add_geom(
-                    name=name, type=library.mjtGeom.mjGEOM_SPHERE,
-                    size=[ball, 0.0, 0.0], pos=centre, **silent,
-                )  # fmt: skip
-                let_touch(spec, f"plate {touch.joint}", name, mu)
-        return compiled(spec)
-
-    def ways(self, pressures: Array) -> Array:
-        """Return how far contacts give way, (points,): as their force, and what moves there."""
-        inertia, place = self.bodies.inertia, self.bodies.built
-        found = np.zeros_like(pressures)
-        for touch, free in zip(self.touches, self.at_joints(found), strict=True):
-            for index in {touch.plate, touch.corners} - {SUPPORT}:
-                arms = touch.places - place.centres[index]
-                about = np.cross(arms, touch.normal) @ place.turns[index]
-                free[:] += 1 / inertia[index, 0] + (about**2 / inertia[index, 3:]).sum(axis=1)
-        return pressures * found
-
     def rubble(self) -> Any:
         """Return a model of the blocks as they are, what they stand on and the floor."""
-        spec, bodies = self._spec()
+        spec, bodies = self.free()
         hulls = self.bodies.hulls
         known = [
             (spec.worldbody if owner == SUPPORT else bodies[owner], corners)
