@@ -103,6 +103,83 @@ def test_a_corbel_dome_rests_as_near_to_its_limit_as_it_falls() -> None:
     assert can_rest(corbelled(0.999)).exists is True
 
 
+def pushed(problem: Problem[Any], azimuth: float) -> Problem[Any]:
+    """All blocks pushed sideways by a share of their weight, the live load."""
+    way = math.radians(azimuth)
+    every = tuple(range(len(problem.assembly.blocks)))
+    push = Load(force=[math.cos(way), math.sin(way), 0], blocks=every, per_weight=True)
+    return replace(problem, live=(push,))
+
+
+DOME = Dome(radius=1, thickness=0.06, eye_deg=8, lunes=6, courses=4, friction=0.6)
+VAULT = BarrelVault(
+    radius=1, thickness=0.2, length=1, half_angle_deg=70, voussoirs=7, rings=3, bond="half"
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("problem", "blocks"),
+    [
+        (pushed(DOME.problem(), 0), 12),
+        (pushed(DOME.problem(), 30), 16),
+        (pushed(DOME.problem(), 7), 24),
+        (pushed(replace(VAULT, friction=0.8).problem(), 0), 14),
+        (pushed(CorbelDome(radius=1, width=0.4, height=0.3, corbel=0.05, rings=4, stones=8,
+                           friction=0.5).problem(), 45), 18),
+    ],
+    ids=["dome", "dome through lunes", "dome aslant", "vault", "corbel dome"],
+)  # fmt: skip
+def test_planes_of_symmetry_halve_what_is_asked_and_change_nothing(
+    problem: Problem[Any], blocks: int
+) -> None:
+    """Load factor, verdicts and margin are those of all blocks, and the answer says so."""
+    half, whole = (largest_load(problem, reduce=reduce) for reduce in (True, False))
+    assert half.load_factor == pytest.approx(whole.load_factor, rel=1e-7)
+    assert half.gap < 1e-7
+    for share, verdict in ((0.99, Verdict.STANDS), (1.01, Verdict.COLLAPSES)):
+        at = problem.with_load(share * whole.load_factor)
+        answer, all_asked = blocksim.check(at), blocksim.check(at, reduce=False)
+        assert answer.verdict is verdict
+        assert all_asked.verdict is verdict
+        assert answer.static.margin == pytest.approx(
+            all_asked.static.margin, rel=1e-7, abs=1e-7
+        )
+        of = len(problem.assembly.blocks)
+        said = f"{blocks} instead of {of} blocks were asked, by symmetry" in answer.reason
+        assert said is (blocks < of)
+        assert answer.blocks == (blocks if blocks < of else None)
+        assert "symmetry" not in all_asked.reason
+
+
+def test_a_block_of_another_weight_or_joint_of_another_friction_is_no_mirror_image() -> None:
+    """Nor is a load on one block: one plane is left, through it or along the joint."""
+    problem = DOME.problem()
+    assembly, count = problem.assembly, len(problem.assembly.blocks)
+    heavy = replace(assembly.blocks[3], weight=1.01 * assembly.blocks[3].weight)
+    blocks = (*assembly.blocks[:3], heavy, *assembly.blocks[4:])
+    rough = replace(assembly.joints[9], friction=0.61)
+    joints = (*assembly.joints[:9], rough, *assembly.joints[10:])
+    load = Load(force=[0, 0, -1], blocks=(5,), per_weight=True)
+    assert can_rest(problem).asked == 4
+    # The plane goes through the opposite lune, too: of six lunes four are asked.
+    through = 16
+    assert can_rest(replace(problem, dead=(load,))).asked == through
+    assert (
+        can_rest(replace(problem, assembly=replace(assembly, blocks=blocks))).asked == through
+    )
+    assert can_rest(replace(problem, assembly=replace(assembly, joints=joints))).asked in (
+        count / 2,
+        through,
+    )
+
+
+def test_what_cannot_be_reduced_in_space_is_refused_by_name() -> None:
+    done = inside("check", "dome", "--mu", "0.7", "--method", "direct", "--reduce")
+    assert done.returncode == 2
+    assert "--reduce" in done.stderr
+    assert "limit in space" in done.stderr
+
+
 @pytest.mark.parametrize("falling", FALLING)
 def test_a_mechanism_opens_no_joint_less_than_its_slip_asks(falling: str) -> None:
     """And gravity gains work in it: summed again from the rates of the blocks."""

@@ -10,7 +10,13 @@ from blocksim.ask.answer import Check as Check
 from blocksim.ask.methods import choose, chosen_words, merged, reduces
 from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
 from blocksim.ask.rest import require_rest, rest_of
-from blocksim.ask.statics import VERDICTS, crushing_evidence, observed, static_evidence
+from blocksim.ask.statics import (
+    VERDICTS,
+    crushing_evidence,
+    fewer,
+    observed,
+    static_evidence,
+)
 from blocksim.ask.undecided import closing_of_verdict, undecided_words
 from blocksim.blocks.assembly import Blocks
 from blocksim.blocks.joints import closed_joints
@@ -149,10 +155,11 @@ def _offered(problem: Problem, offered: Offers, chosen: Method, given: Taken) ->
 def _general(problem: Problem[Any], chosen: Method, given: Taken) -> _Found:
     """Answer by limit analysis or by an engine."""
     known = problem.has_statics
-    factor = collapse(problem).load_factor if known and problem.live else None
+    reduce = given.reduce is not False
+    factor = collapse(problem, reduce=reduce).load_factor if known and problem.live else None
     # What soil bears is mobilised as far as it has to be.
     problem = problem if problem.in_space else mobilised(problem)
-    static = equilibrium(problem) if known else None
+    static = equilibrium(problem, reduce=reduce) if known else None
     exists = None if static is None else static.exists
     if static is not None and chosen.is_static:
         if exists and not problem.in_space and problem.strength is not None:
@@ -171,6 +178,7 @@ def _general(problem: Problem[Any], chosen: Method, given: Taken) -> _Found:
             joints=observed(problem, rates),
             needed=needed,
             load_factor=factor,
+            blocks=fewer(problem, static),
         )
         return _Found(answer, exists, moved=False, static=static)
     answer, seen = _simulated(problem, None, chosen, given)

@@ -20,6 +20,7 @@ from blocksim.ask.searches import (
     shaken,
     slowly,
 )
+from blocksim.ask.statics import halved
 from blocksim.ask.undecided import closing_of_value
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import require
@@ -149,6 +150,8 @@ def by_family(family: Family[Any], within: Within | None, given: Taken) -> Found
         from blocksim.simulation.merging import Merging
 
         evidence += _reduction(found, Merging.by, most)
+    elif chosen.is_static and found.blocks is not None:
+        evidence += (halved(probe, found.blocks),)
     ends = (found.falls, found.stands)
     lower, upper = ends if family.stands == "high" else ends[::-1]
     intervals = tried_ends(family, found, ask) if known else None
@@ -184,8 +187,9 @@ def _sought(
     """Search for the first change, and return what is asked of the others."""
     (low, high), rises = within, family.stands == "high"
 
-    def by_limit(value: float, rises: bool) -> Search:
-        return by_programmes(family, value, rises=rises, tol=given.tol)
+    def by_limit(value: float | None, rises: bool) -> Search:
+        reduce = given.reduce is not False
+        return by_programmes(family, value, rises=rises, tol=given.tol, reduce=reduce)
 
     if family.spreading is not None:
         if chosen.is_static:
@@ -193,7 +197,7 @@ def _sought(
         found = slowly(family.spreading, given.tol, high, exact, given.progress)
         return found, by_limit
     if chosen.is_static:
-        return by_programmes(family, exact, rises=rises, tol=given.tol), by_limit
+        return by_limit(exact, rises), by_limit
     if probe.is_moving:
         start = min(max(family.start or low + GUESS * (high - low), low), high)
         sought = Sought(

@@ -80,10 +80,14 @@ def choose(
     if moving and chosen.is_static:
         able = ", ".join(NAMES)
         raise InputError("method", chosen.name, f"one of {able}: {chosen.name} moves no blocks")
-    still = problem is None or (problem.has_statics and not problem.in_space)
-    if reduce and not (still and _can_reduce(chosen)):
-        able = ", ".join(each.name for each in _shipped() if _can_reduce(each))
-        allowed = f"left out but for {able}, in the plane, on ground at rest"
+    still = problem is None or problem.has_statics
+    in_space = problem is not None and problem.in_space
+    able = chosen.name == "limit" if in_space else _can_reduce(chosen)
+    if reduce and not (still and able):
+        names = ", ".join(each.name for each in _shipped() if _can_reduce(each))
+        allowed = (
+            f"left out but for {names}, in the plane, and limit in space, on ground at rest"
+        )
         raise InputError("reduce", reduce, allowed)
     if tol and tol < chosen.finest:
         raise InputError("tol", tol, f"at least {chosen.finest:g} for {chosen.name}")

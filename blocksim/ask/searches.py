@@ -11,6 +11,7 @@ from blocksim.ask.ends import Within
 from blocksim.ask.families import Family
 from blocksim.ask.options import Taken
 from blocksim.ask.search import Answer, Bisection
+from blocksim.ask.statics import fewer
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress
 from blocksim.limit import equilibrium
@@ -48,7 +49,8 @@ class Search:
     `runs`, `undecided`: Values tried, and those without an answer.
     `reason`: What the answer rests on.
     `blocks`, `splits`: Most blocks simulated at any value, and how many joints in all a
-        reduction merged and had to split again; None for static methods.
+        reduction merged and had to split again; None for static methods, but for blocks that
+        planes of symmetry left.
     `collapse`: By an engine, what was seen at the value that collapsed.
     """
 
@@ -192,7 +194,12 @@ def proofs_beside(
 
 
 def by_programmes(
-    family: Family[Any], exact: float | None, *, rises: bool, tol: float
+    family: Family[Any],
+    exact: float | None,
+    *,
+    rises: bool,
+    tol: float,
+    reduce: bool = True,
 ) -> Search:
     """Ask limit analysis a little to both sides of its own value."""
     if exact is None:
@@ -206,12 +213,16 @@ def by_programmes(
     spatial = family.problem.in_space
     told: list[bool | None] = []
     falls = stands = exact
-    runs = 0
+    runs, blocks = 0, None
     for sure in (*SURE, *(by for by in ROUGH if spatial and by <= tol)):
         ends = exact * (1 - sure), exact * (1 + sure)
         falls, stands = ends if rises else ends[::-1]
         runs += 2
-        told = [exists(family.at(end)) for end in (falls, stands)]
+        if spatial:
+            static = [equilibrium(family.at(end), reduce=reduce) for end in (falls, stands)]
+            told, blocks = [each.exists for each in static], fewer(family.problem, static[1])
+        else:
+            told = [exists(family.at(end)) for end in (falls, stands)]
         if told == [False, True]:
             break
     confirmed = told == [False, True]
@@ -223,6 +234,7 @@ def by_programmes(
         confirmed=confirmed,
         runs=runs,
         reason=f"limit analysis; {said}",
+        blocks=blocks,
     )
 
 

@@ -51,7 +51,22 @@ def static_evidence(
     if isinstance(static, Equilibrium):
         found = Evidence("limit analysis", _words(static))
         return (found, *closing_of_verdict(problem, stands=static.exists))
-    return (Evidence("limit analysis", _words_in_space(static)),)
+    found = Evidence("limit analysis", _words_in_space(static))
+    blocks = fewer(problem, static)
+    return (found,) if blocks is None else (found, halved(problem, blocks))
+
+
+def fewer(problem: Problem[Any], static: Equilibrium | SpatialEquilibrium) -> int | None:
+    """Return how many blocks were asked for all, by symmetry; None where all were."""
+    if isinstance(static, Equilibrium) or static.asked == len(problem.assembly.blocks):
+        return None
+    return static.asked
+
+
+def halved(problem: Problem[Any], blocks: int) -> Evidence:
+    """Say that planes of symmetry halved what was asked, in space."""
+    most = len(problem.assembly.blocks)
+    return Evidence("reduction", f"{blocks} instead of {most} blocks were asked, by symmetry")
 
 
 def _words(static: Equilibrium) -> str:

@@ -38,7 +38,7 @@ SET = option(
 )
 REDUCE = option(
     "Simulate blocks that stay together as one, and half of an arch: pymunk does, "
-    "pybullet does with arches.",
+    "pybullet does with arches. In space limit asks what planes of symmetry leave.",
     name="--reduce/--no-reduce",
 )
 MUST_REST = option(

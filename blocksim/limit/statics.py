@@ -18,17 +18,25 @@ if TYPE_CHECKING:
 
 
 @overload
-def equilibrium(problem: Problem) -> Equilibrium: ...
+def equilibrium(problem: Problem, *, reduce: bool = ...) -> Equilibrium: ...
 @overload
-def equilibrium(problem: Problem[SpatialAssembly]) -> SpatialEquilibrium: ...
+def equilibrium(
+    problem: Problem[SpatialAssembly], *, reduce: bool = ...
+) -> SpatialEquilibrium: ...
 @overload
-def equilibrium(problem: Problem[Any]) -> Equilibrium | SpatialEquilibrium: ...
-def equilibrium(problem: Problem[Any]) -> Equilibrium | SpatialEquilibrium:
+def equilibrium(
+    problem: Problem[Any], *, reduce: bool = ...
+) -> Equilibrium | SpatialEquilibrium: ...
+def equilibrium(
+    problem: Problem[Any], *, reduce: bool = True
+) -> Equilibrium | SpatialEquilibrium:
     """Find forces of equilibrium, all as far inside their cones of friction as possible.
 
     Parameters
     ----------
     problem : Problem
+    reduce : bool, optional
+        Whether, in space, planes of symmetry halve what is asked; the answer is the same.
 
     Returns
     -------
@@ -47,16 +55,16 @@ def equilibrium(problem: Problem[Any]) -> Equilibrium | SpatialEquilibrium:
     # Cones are loaded where they are asked for.
     from blocksim.limit.space import can_rest
 
-    return can_rest(problem)
+    return can_rest(problem, reduce=reduce)
 
 
 @overload
-def collapse(problem: Problem) -> Collapse: ...
+def collapse(problem: Problem, *, reduce: bool = ...) -> Collapse: ...
 @overload
-def collapse(problem: Problem[SpatialAssembly]) -> SpatialCollapse: ...
+def collapse(problem: Problem[SpatialAssembly], *, reduce: bool = ...) -> SpatialCollapse: ...
 @overload
-def collapse(problem: Problem[Any]) -> Collapse | SpatialCollapse: ...
-def collapse(problem: Problem[Any]) -> Collapse | SpatialCollapse:
+def collapse(problem: Problem[Any], *, reduce: bool = ...) -> Collapse | SpatialCollapse: ...
+def collapse(problem: Problem[Any], *, reduce: bool = True) -> Collapse | SpatialCollapse:
     """Find the largest factor on the live loads at which forces of equilibrium exist.
 
     The problem's own load factor does not matter. Below 0 it falls, or crushes, without them.
@@ -65,6 +73,8 @@ def collapse(problem: Problem[Any]) -> Collapse | SpatialCollapse:
     ----------
     problem : Problem
         With live loads.
+    reduce : bool, optional
+        As of `equilibrium`.
 
     Returns
     -------
@@ -81,7 +91,7 @@ def collapse(problem: Problem[Any]) -> Collapse | SpatialCollapse:
         return collapse_in_plane(problem)
     from blocksim.limit.space import largest_load
 
-    return largest_load(problem)
+    return largest_load(problem, reduce=reduce)
 
 
 def standing_margin(problem: Problem[Any]) -> float:

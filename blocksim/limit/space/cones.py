@@ -39,7 +39,7 @@ def most(
     pull: Array,
     friction: Array,
     live: Array | None = None,
-    lift: float = 0.0,
+    lift: float | Array = 0.0,
 ) -> Answer:
     """Find forces within friction that balance, at the largest value of one unknown.
 

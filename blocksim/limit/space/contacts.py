@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, cast
 
 import numpy as np
@@ -12,6 +14,7 @@ from scipy.sparse.linalg import splu
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.space.points import JointPoints
 from blocksim.limit.space.cones import Answer, most
+from blocksim.limit.space.symmetry import Symmetry, images_of, unmoved
 
 LIFTS = (10, 100, 1000)
 """By how much points are to open, over what the solver left over."""
@@ -19,8 +22,20 @@ SOFT = 1e-14
 """Of the largest stiffness: what keeps equations solvable that say the same."""
 
 
+@dataclass(frozen=True, eq=False)
 class Contacts(JointPoints):
-    """Points of joints whose forces a cone programme finds."""
+    """Points of joints whose forces a cone programme finds.
+
+    `pulls`: Forces and moments on the blocks, each (6 blocks,): planes in which they are
+        symmetric, and the structure is, are made use of.
+    """
+
+    pulls: tuple[Array, ...] = ()
+
+    @cached_property
+    def symmetry(self) -> Symmetry:
+        """What forces at all points follow from, and rates of all blocks."""
+        return Symmetry(self, images_of(self, *self.pulls) if self.pulls else [unmoved(self)])
 
     def most(self, pull: Array, live: Array | None = None, lift: float = 0.0) -> Answer:
         """Find the largest factor on `live`, or the most that all points can press by.
@@ -28,12 +43,22 @@ class Contacts(JointPoints):
         Forces and equations are in units of the blocks beside them, so that blocks of any
         weight and size count alike.
         """
-        each = np.repeat(self.own, 3)
-        matrix = sparse.diags(1 / self.rows) @ self.matrix @ sparse.diags(each)
-        scaled = None if live is None else live / self.rows
-        found = most(matrix, pull / self.rows, self.friction, scaled, lift)
-        forces = found.forces * each if len(found.forces) else found.forces
-        return Answer(forces, found.value, found.rates / self.rows)
+        whole = self.symmetry
+        some = (6 * whole.blocks[:, None] + np.arange(6)).ravel()
+        scale, own = self.rows[some], np.repeat(self.own[whole.points], 3)
+        free = whole.free.T @ sparse.diags(1 / scale)
+        matrix = free @ sparse.csr_matrix(self.matrix)[some] @ whole.forces @ sparse.diags(own)
+        found = most(
+            matrix,
+            free @ pull[some],
+            self.friction[whole.points],
+            None if live is None else free @ live[some],
+            lift * whole.counts,
+        )
+        forces = found.forces
+        if len(forces):
+            forces = whole.forces @ (forces * own)
+        return Answer(forces, found.value, whole.rates @ (free.T @ found.rates))
 
     def slack(self, forces: Array) -> Array:
         """Return by how much each point presses more than friction needs, (points,).

@@ -24,6 +24,8 @@ BALANCED = 1e-12
 """Of each block's own weight: forces and moments that may be left over."""
 FARTHEST = 1e5
 """Times all weight: forces up to which those that would balance are ruled out."""
+AGREED = 1e-9
+"""Of a load factor: how far what part of the blocks tells of all may be from what they tell."""
 SEEN = 1e-5
 """Of the largest way: rates from which on a joint is told to open or to slide."""
 ROUNDED = 1e-14
@@ -52,9 +54,26 @@ class SpatialEquilibrium:
         self._contacts, self._found = contacts, found
         self.margin = found.value
 
+    @property
+    def asked(self) -> int:
+        """How many blocks were asked: fewer than all where planes of symmetry halve them."""
+        return len(self._contacts.symmetry.blocks)
+
     @cached_property
     def _held(self) -> tuple[Array, float]:
-        """Forces and what they leave over, or rates and how far they rule forces out."""
+        """Forces and what they leave over, or rates and how far they rule forces out.
+
+        What part of the blocks does not tell, all of them may.
+        """
+        held, contacts = self._checked(), self._contacts
+        passed = held[1] <= BALANCED if self._presses else held[1] * FARTHEST < 1
+        if passed or not contacts.symmetry.halves:
+            return held
+        whole = Contacts(contacts.problem)
+        self.__init__(whole, whole.most(contacts.problem.applied_forces().ravel()))
+        return self._checked()
+
+    def _checked(self) -> tuple[Array, float]:
         contacts = self._contacts
         pull = contacts.problem.applied_forces().ravel()
         if self._presses:
@@ -133,16 +152,17 @@ class SpatialCollapse:
     mechanism: Array | None = None
 
 
-def can_rest(problem: Problem[SpatialAssembly]) -> SpatialEquilibrium:
+def can_rest(problem: Problem[SpatialAssembly], *, reduce: bool = True) -> SpatialEquilibrium:
     """Do in space what `limit.equilibrium` does."""
-    contacts = Contacts(problem)
-    return SpatialEquilibrium(contacts, contacts.most(problem.applied_forces().ravel()))
+    pull = problem.applied_forces().ravel()
+    contacts = Contacts(problem, (pull,) if reduce else ())
+    return SpatialEquilibrium(contacts, contacts.most(pull))
 
 
-def largest_load(problem: Problem[SpatialAssembly]) -> SpatialCollapse:
+def largest_load(problem: Problem[SpatialAssembly], *, reduce: bool = True) -> SpatialCollapse:
     """Do in space what `limit.collapse` does."""
-    contacts = Contacts(problem)
-    pull, live = problem.with_load(0.0).applied_forces().ravel(), contacts.live
+    pull, live = problem.with_load(0.0).applied_forces().ravel(), problem.live_forces.ravel()
+    contacts = Contacts(problem, (pull, live) if reduce else ())
     # In units of its own size, as loads may be of any.
     unit = float(np.abs(live / contacts.rows).max()) or 1.0
     found = contacts.most(pull, live / unit)
@@ -151,6 +171,8 @@ def largest_load(problem: Problem[SpatialAssembly]) -> SpatialCollapse:
     work = float(found.rates @ live) / unit
     bound = -float(found.rates @ pull) / work if work > 0 else math.inf
     gap = abs(bound - found.value) / max(abs(found.value), 1e-300)
+    if gap > AGREED and contacts.symmetry.halves:
+        return largest_load(problem, reduce=False)
     return SpatialCollapse(
         load_factor=found.value / unit, gap=gap, mechanism=unit_rates(problem, found.rates)
     )
