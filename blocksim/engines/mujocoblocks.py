@@ -14,6 +14,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.problem import Problem
@@ -36,35 +37,6 @@ RUBBLE_SOFTNESS, RUBBLE_RATIO = 1e-3, 10.0
 """How soft they are then, and how much harder friction is than pressure."""
 
 
-def spec_of(gravity: Array, masses: Array) -> Any:
-    """Return a model without bodies, and how it is solved."""
-    least, lightest = library.mjMINVAL, float(masses.min())
-    allowed = f"above {least:g} of the mean block's: MuJoCo takes no less"
-    require(lightest > least, "lightest block", f"mass or inertia of {lightest:.3g}", allowed)
-    spec = library.MjSpec()
-    option = spec.option
-    option.gravity = gravity.tolist()
-    option.cone = library.mjtCone.mjCONE_ELLIPTIC
-    option.solver = library.mjtSolver.mjSOL_NEWTON
-    option.tolerance = TOLERANCE
-    # It would put all blocks back in silence where numbers overflow.
-    option.disableflags |= library.mjtDisableBit.mjDSBL_AUTORESET
-    return spec
-
-
-def with_body(spec: Any, mass: float, inertia: list[float], **where: list[float]) -> Any:
-    """Add a body of some mass and principal moments to a model, and return it."""
-    # Left out, its own place and axes are not those of the body.
-    return spec.worldbody.add_body(
-        mass=mass,
-        inertia=inertia,
-        ipos=[0.0, 0.0, 0.0],
-        iquat=[1.0, 0.0, 0.0, 0.0],
-        explicitinertial=True,
-        **where,
-    )
-
-
 class Jointed(Touching, ABC):
     """Bodies of a model that touch at the corners of joints.
 
@@ -76,16 +48,50 @@ class Jointed(Touching, ABC):
     inertia: Array
 
     @abstractmethod
-    def free(self) -> tuple[Any, list[Any]]:
-        """Return a model of bodies without shapes, and the bodies."""
+    def release(self, body: Any) -> None:
+        """Let a body of a model move."""
+
+    @abstractmethod
+    def pieces(self) -> tuple[list[tuple[int, Array]], dict[str, list[float]]]:
+        """Return convex parts, each of a block or of `SUPPORT`, and where the floor is."""
+
+    def _bodies(self) -> tuple[Any, list[Any]]:
+        """Return a model of bodies without shapes, and how it is solved; then the bodies.
+
+        The last of them is what is fixed.
+        """
+        least, lightest = library.mjMINVAL, float(self.inertia.min())
+        allowed = f"above {least:g} of the mean block's: MuJoCo takes no less"
+        require(
+            lightest > least, "lightest block", f"mass or inertia of {lightest:.3g}", allowed
+        )
+        spec, bodies = library.MjSpec(), list[Any]()
+        option = spec.option
+        option.gravity = self.problem.gravity.tolist()
+        option.cone = library.mjtCone.mjCONE_ELLIPTIC
+        option.solver = library.mjtSolver.mjSOL_NEWTON
+        option.tolerance = TOLERANCE
+        # It would put all blocks back in silence where numbers overflow.
+        option.disableflags |= library.mjtDisableBit.mjDSBL_AUTORESET
+        turns = Rotation.from_matrix(self.frames.turns[:-1]).as_quat()[:, ORDER]
+        for (mass, _, _, *moments), centre, turn in zip(
+            self.inertia.tolist(), self.frames.centres.tolist(), turns.tolist(), strict=False
+        ):
+            # Left out, its own place and axes are not those of the body.
+            body = spec.worldbody.add_body(
+                pos=centre, quat=turn, mass=mass, inertia=moments, ipos=[0.0, 0.0, 0.0],
+                iquat=[1.0, 0.0, 0.0, 0.0], explicitinertial=True,
+            )  # fmt: skip
+            self.release(body)
+            bodies.append(body)
+        return spec, [*bodies, spec.worldbody]
 
     def joined(self, reaches: Array | None = None) -> Any:
         """Return a model of bodies that touch at the corners of joints.
 
         `reaches`, (points,): How far each corner reaches into its plate [size].
         """
-        spec, bodies = self.free()
-        bodies.append(spec.worldbody)
+        spec, bodies = self._bodies()
         silent = {"contype": 0, "conaffinity": 0}
         for touch, ways in zip(self.touches, self.at_joints(reaches), strict=True):
             plate = touch.places.mean(axis=0) - touch.half[2] * touch.normal
@@ -129,25 +135,25 @@ class Jointed(Touching, ABC):
                 free[:] += 1 / inertia[0] + (about**2 / inertia[3:]).sum(axis=1)
         return pressures * found
 
-
-def rubble_of(
-    spec: Any, hulls: list[tuple[Any, Array]], floor: dict[str, list[float]], mu: float
-) -> Any:
-    """Return the model of hulls on bodies that may meet any other, and of a floor."""
-    spec.option.timestep, spec.option.impratio = RUBBLE_STEP, RUBBLE_RATIO
-    look: dict[str, Any] = {
-        "friction": [min(mu, FRICTION_CAP), 0.0, 0.0],
-        "condim": 3,
-        "solref": [RUBBLE_PERIOD * RUBBLE_STEP, 1.0],
-        "solimp": [*[1 / (1 + RUBBLE_SOFTNESS)] * 2, 1.0, 0.5, 2.0],
-    }
-    for index, (body, corners) in enumerate(hulls):
-        spec.add_mesh(name=f"mesh {index}", uservert=corners.ravel())
-        # A mesh is moved to its centre of mass unless it is told where it lies.
-        body.add_geom(type=library.mjtGeom.mjGEOM_MESH, meshname=f"mesh {index}", **look)
-    plane = library.mjtGeom.mjGEOM_PLANE
-    spec.worldbody.add_geom(type=plane, size=[0.0, 0.0, 1.0], **floor, **look)
-    return spec.compile()
+    def rubble(self) -> Any:
+        """Return a model of the blocks as they are, what they stand on and the floor."""
+        (spec, bodies), (hulls, floor) = self._bodies(), self.pieces()
+        spec.option.timestep, spec.option.impratio = RUBBLE_STEP, RUBBLE_RATIO
+        look: dict[str, Any] = {
+            "friction": [min(self.problem.mu, FRICTION_CAP), 0.0, 0.0],
+            "condim": 3,
+            "solref": [RUBBLE_PERIOD * RUBBLE_STEP, 1.0],
+            "solimp": [*[1 / (1 + RUBBLE_SOFTNESS)] * 2, 1.0, 0.5, 2.0],
+        }
+        for index, (owner, corners) in enumerate(hulls):
+            spec.add_mesh(name=f"mesh {index}", uservert=corners.ravel())
+            # A mesh is moved to its centre of mass unless it is told where it lies.
+            bodies[owner].add_geom(
+                type=library.mjtGeom.mjGEOM_MESH, meshname=f"mesh {index}", **look
+            )
+        plane = library.mjtGeom.mjGEOM_PLANE
+        spec.worldbody.add_geom(type=plane, size=[0.0, 0.0, 1.0], **floor, **look)
+        return spec.compile()
 
 
 class Planar(Polygons, Jointed):
@@ -159,8 +165,7 @@ class Planar(Polygons, Jointed):
         self.masses: Array = self.assembly.masses.ravel()
         centres = np.pad(self.assembly.built[:, :2], ((0, 0), (0, 1)))
         self.frames = Place(centres, np.broadcast_to(np.eye(3), (len(centres), 3, 3)))
-        self.inertia = np.full((len(self._built), 6), np.inf)
-        self.inertia[:, [0, 1, 5]] = self.assembly.masses
+        self.inertia = self.assembly.spatial_masses[:, [0, 1, 3, 4, 5, 2]]
 
     @cached_property
     def touches(self) -> tuple[Touch, ...]:
@@ -179,31 +184,19 @@ class Planar(Polygons, Jointed):
         even = np.where(corner, pressures.mean(axis=1, keepdims=True), pressures)
         return super().ways(even.ravel())
 
-    def free(self) -> tuple[Any, list[Any]]:
-        """Return a model of bodies that move in the plane, without shapes, and the bodies."""
-        assembly = self.assembly
-        size, spec = assembly.size, spec_of(self.problem.gravity, assembly.spatial_masses)
-        bodies: list[Any] = []
-        for index, block in enumerate(assembly.blocks):
-            mass, _, inertia, _, *across = assembly.spatial_masses[index].tolist()
-            body = with_body(spec, mass, [*across, inertia], pos=[*(block.centre / size), 0.0])
-            slide, hinge = library.mjtJoint.mjJNT_SLIDE, library.mjtJoint.mjJNT_HINGE
-            body.add_joint(type=slide, axis=[1.0, 0.0, 0.0])
-            body.add_joint(type=slide, axis=[0.0, 1.0, 0.0])
-            body.add_joint(type=hinge, axis=[0.0, 0.0, 1.0])
-            bodies.append(body)
-        return spec, bodies
+    def release(self, body: Any) -> None:
+        """Let a body slide along x and y, and turn."""
+        slide, hinge = library.mjtJoint.mjJNT_SLIDE, library.mjtJoint.mjJNT_HINGE
+        body.add_joint(type=slide, axis=[1.0, 0.0, 0.0])
+        body.add_joint(type=slide, axis=[0.0, 1.0, 0.0])
+        body.add_joint(type=hinge, axis=[0.0, 0.0, 1.0])
 
-    def rubble(self) -> Any:
-        """Return a model of the blocks as they are, what they stand on and the floor."""
-        spec, bodies = self.free()
+    def pieces(self) -> tuple[list[tuple[int, Array]], dict[str, list[float]]]:
+        """Return polygons as prisms, and a floor whose normal is z, turned to y."""
         solids, half = self.solids, math.sqrt(0.5)
-        polygons = [(bodies[index], polygon) for index, polygon in solids.moving]
-        polygons += [(spec.worldbody, polygon) for polygon in solids.fixed]
-        hulls = [(body, prism(polygon, 1.0)[0]) for body, polygon in polygons]
-        # The floor's normal is z, turned to y.
+        polygons = [*solids.moving, *((SUPPORT, each) for each in solids.fixed)]
         floor = {"pos": [0.0, solids.level, 0.0], "quat": [half, -half, 0.0, 0.0]}
-        return rubble_of(spec, hulls, floor, self.problem.mu)
+        return [(owner, prism(each, 1.0)[0]) for owner, each in polygons], floor
 
     def poses(self, places: Array, zero: Array) -> Array:
         """Return centres and rotations, (blocks, 3)."""

@@ -8,13 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.engines.mujocoblocks import (
-    ORDER,
-    Jointed,
-    rubble_of,
-    spec_of,
-    with_body,
-)
+from blocksim.engines.mujocoblocks import ORDER, Jointed
 from blocksim.engines.polyhedra import Polyhedra
 
 
@@ -31,29 +25,16 @@ class Spatial(Polyhedra, Jointed):
         """The same of each velocity."""
         return self.inertia.ravel()
 
-    def free(self) -> tuple[Any, list[Any]]:
-        """Return a model of free bodies, without shapes, and the bodies."""
-        spec, found = spec_of(self.problem.gravity, self.masses), list[Any]()
-        turns = self.quaternions[:, ORDER]
-        for index, (mass, _, _, *moments) in enumerate(self.bodies.inertia.tolist()):
-            centre = self.bodies.built.centres[index].tolist()
-            body = with_body(spec, mass, moments, pos=centre, quat=turns[index].tolist())
-            body.add_freejoint()
-            found.append(body)
-        return spec, found
+    def release(self, body: Any) -> None:
+        """Let a body move."""
+        body.add_freejoint()
 
-    def rubble(self) -> Any:
-        """Return a model of the blocks as they are, what they stand on and the floor."""
-        spec, bodies = self.free()
+    def pieces(self) -> tuple[list[tuple[int, Array]], dict[str, list[float]]]:
+        """Return the parts of blocks and of supports, and where the floor is."""
         hulls = self.bodies.hulls
-        known = [
-            (spec.worldbody if owner == SUPPORT else bodies[owner], corners)
-            for owner, support, corners in zip(
-                hulls.owner, hulls.support, hulls.corners, strict=True
-            )
-            if owner != SUPPORT or support >= 0
-        ]
-        return rubble_of(spec, known, {"pos": [0.0, 0.0, self.level]}, self.problem.mu)
+        known = zip(hulls.owner.tolist(), hulls.support.tolist(), hulls.corners, strict=True)
+        parts = [(at, each) for at, on, each in known if at != SUPPORT or on >= 0]
+        return parts, {"pos": [0.0, 0.0, self.level]}
 
     def poses(self, places: Array, zero: Array) -> Array:
         """Return centres and rotation vectors since they were built, (blocks, 6)."""
