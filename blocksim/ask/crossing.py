@@ -35,6 +35,8 @@ from blocksim.limit.statics import exists
 
 GAP = 1e-6
 """Share of the least load factor within which it is found."""
+ROUNDING = 1e-12
+"""Share of it within which two places are as bad."""
 HEADINGS = ("right", "left")
 
 
@@ -117,7 +119,9 @@ def crossing(problem: Problem, vehicle: Vehicle, *, progress: Progress = silent)
     require(bool(search.places), "vehicle", vehicle.words, "a road above blocks that move")
     highest = search.close(GAP)
     places = sorted(search.places, key=lambda place: (place.heading != "right", place.position))
-    worst = max(places, key=lambda place: 1 / place.load_factor)
+    most = (1 - ROUNDING) * max(1 / place.load_factor for place in places)
+    # Of two places that mirror each other the first, whatever is rounded.
+    worst = next(place for place in places if 1 / place.load_factor >= most)
     return Crossing(
         problem=replace(problem, live=loads_at(problem, worst.live), load=1.0),
         vehicle=vehicle,
