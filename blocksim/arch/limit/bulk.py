@@ -72,10 +72,9 @@ def short_intervals(joints: Joints, depth: Array, mu: Array, spread: Array) -> A
     held = np.flatnonzero(np.isfinite(mu))
     if len(held) < len(mu):
         joints = Joints(joints.angles[held])
-    for sign in (1.0, -1.0):
-        highest, lowest = sliding(joints, mu[held], sign).ends()
-        most[held] = np.minimum(most[held], highest.min(axis=1))
-        least[held] = np.maximum(least[held], lowest.max(axis=1))
+    highest, lowest = sliding(joints, mu[held]).ends()
+    most[held] = np.minimum(most[held], highest.min(axis=1))
+    least[held] = np.maximum(least[held], lowest.max(axis=1))
     return np.stack([most, least])
 
 

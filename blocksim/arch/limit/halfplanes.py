@@ -200,20 +200,23 @@ def least_met(
     return found
 
 
-def sliding(joints: Joints, mu: Array, sign: float) -> Bounds:
-    """Joints of which friction asks sign T <= mu N.
+def sliding(joints: Joints, mu: Array) -> Bounds:
+    """Joints of which friction asks T <= mu N, then all of which it asks -T <= mu N.
 
     `mu`, (k,): Friction coefficients, finite.
-    `sign`: 1 or -1.
-    Returns: Shape (k, j).
+    Returns: Shape (k, 2 j).
     """
     grip, sine, cosine = mu[:, None], joints.sine, joints.cosine
-    rate = grip * cosine - sign * sine
-    level = grip * joints.force - sign * joints.lag
+    count = cosine.shape[1]
+    held, force = grip * cosine, grip * joints.force
+    rate = np.concatenate([held - sine, held + sine], axis=1)
+    level = np.concatenate([force - joints.lag, force + joints.lag], axis=1)
 
     def level_h(place: tuple[int, ...]) -> float:
-        turned = sign * cosine[place] + mu[place[0]] * sine[place]
-        return float(-joints.angles[place] * turned)
+        arch, at = place[0], place[1] % count
+        turned = mu[arch] * sine[arch, at]
+        turned += cosine[arch, at] if place[1] < count else -cosine[arch, at]
+        return float(-joints.angles[arch, at] * turned)
 
     return Bounds(rate, level, level_h)
 

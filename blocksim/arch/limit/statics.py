@@ -122,8 +122,7 @@ def friction_bounds(joints: Joints, mu: float) -> tuple[Bound, Bound]:
     """Interval of thrusts with which no joint slides, whatever the thickness."""
     if not math.isfinite(mu):
         return Bound(math.inf, -math.inf), Bound(-math.inf, math.inf)
-    up, down = (_tightest(sliding(joints, np.array([mu]), sign)) for sign in (1.0, -1.0))
-    return _within(up, down)
+    return _tightest(sliding(joints, np.array([mu])))
 
 
 def _within(first: tuple[Bound, Bound], second: tuple[Bound, Bound]) -> tuple[Bound, Bound]:
@@ -151,7 +150,7 @@ def _bound(bounds: Bounds, short: float, place: int) -> Bound:
     thrust = 1 - short if short < 0.5 else bounds.thrust(where)
     if len(where) == 3:
         return Bound(short, thrust, extrados=where[1], intrados=where[2])
-    return Bound(short, thrust, slides=where[1])
+    return Bound(short, thrust, slides=where[1] % (bounds.rate.shape[1] // 2))
 
 
 def _placed(bound: Bound, places: NDArray[np.int64]) -> Bound:
