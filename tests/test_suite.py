@@ -14,12 +14,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from half_arch import by_half
 from own_balance import SIDES, by_contact_forces, by_pyramids
 from running import inside
 from scipy.integrate import quad
 from scipy.spatial import Delaunay
 from scipy.spatial.transform import Rotation
-from shapely.geometry import Polygon
+from shapely.geometry import MultiPoint, Polygon
 
 from blocksim import check, structure_of
 from blocksim.suite.export import questions
@@ -61,6 +62,36 @@ def test_answers_next_to_the_limit_are_proved(asked: Question) -> None:
 )
 def test_a_programme_of_its_own_agrees(asked: Question) -> None:
     assert by_contact_forces(asked.scene.record()) == asked.stands
+
+
+def drawn_flat(scene: dict[str, Any]) -> dict[str, Any]:
+    """Draw a vault, whose blocks lie along it, as the arch that it is from the front."""
+    seen: dict[Polygon, bool] = {}
+    for body in scene["bodies"]:
+        for shape in body["polyhedra"]:
+            front = MultiPoint(np.array(shape)[:, [0, 2]]).convex_hull
+            assert isinstance(front, Polygon)
+            if not any(front.equals_exact(each, 1e-9, normalize=True) for each in seen):
+                seen[front] = body["fixed"]
+    bodies = [
+        {"polygons": [each.exterior.coords[:-1]], "mass": each.area, "fixed": fixed}
+        for each, fixed in seen.items()
+    ]
+    return scene | {"bodies": bodies}
+
+
+SYMMETRIC = [
+    each
+    for each in NEAREST
+    if (each.group.startswith("arches") and each.scene.gravity[0] == 0)
+    or each.family.name in {"thin-piers", "thin-barrel"}
+]
+
+
+@pytest.mark.parametrize("asked", SYMMETRIC, ids=lambda each: each.name)
+def test_statics_by_hand_of_half_an_arch_agrees(asked: Question) -> None:
+    scene = asked.scene.record()
+    assert by_half(drawn_flat(scene) if spatial(asked) else scene) == asked.stands
 
 
 def in_space(group: str | None, level: float) -> list[Question]:

@@ -10,8 +10,8 @@ class Engine:
 
     NAME, VERSION, DIMENSIONS = "Drake", "1.51.0", (2, 3)
     SETTINGS = {
-        "documented": ("its defaults: 1 ms, contact at points", {"step": 1e-3}),
-        "best": ("5 ms, SAP, hydroelastic, 1e11 Pa", {"step": 5e-3, "modulus": 1e11}),
+        "documented": ("5 ms, contact at points", {"step": 5e-3}),
+        "best": ("5 ms, SAP, hydroelastic surfaces, 1e11 Pa", {"step": 5e-3, "modulus": 1e11}),
     }
 
     def __init__(self, scene, settings):
