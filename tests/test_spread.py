@@ -547,3 +547,36 @@ def test_what_fell_stands_nowhere_beyond() -> None:
 def test_an_answer_on_supports_that_moved_says_what_acted_then() -> None:
     done = inside("bracket", "flat-arch", "--mu", "0.8", "--spread", "0.01", "--over", "tilt")
     assert "supports moved by 0.01 m, before any push and under all else" in done.stdout
+
+
+@pytest.mark.parametrize("over", ["load", "mu"])
+def test_what_is_pushed_falls_where_it_falls_first(over: str) -> None:
+    """A check pushes to the side to which less is borne, which is not that of the start."""
+    line = (
+        "--span",
+        "8",
+        "--rise",
+        "2.5",
+        "--thickness",
+        "0.5",
+        "--fill",
+        "0.5",
+        "--push",
+        "0.1",
+    )
+    asked = *line, "--point-load", "1.5", "20"
+    mu = () if over == "mu" else ("--mu", "0.7")
+    start = mu or ("--mu", "0.9")
+    found = json.loads(inside("bracket", *asked, *start, "--over", over, "--json").stdout)
+    stands = -1.0 if found["stands"] == "low" else 1.0
+    for side, code in ((stands, 0), (-stands, 1)):
+        value = repr(found["limit"] * (1 + 1e-4 * side))
+        assert inside("check", *asked, *mu, f"--{over}", value).returncode == code
+
+
+def test_a_push_that_is_sought_is_not_given() -> None:
+    done = inside("bracket", "column", "--mu", "0.6", "--push", "0.1", "--over", "push")
+    assert (done.returncode, done.stderr) == (
+        2,
+        "blocksim: --push = 0.1: must be left out: it is sought\n",
+    )

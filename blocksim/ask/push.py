@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +15,9 @@ from blocksim.blocks.road import bears_road
 from blocksim.common.checks import PUSH, require
 from blocksim.limit.capacity import collapse
 from blocksim.limit.displaced import Displaced
+
+if TYPE_CHECKING:
+    from blocksim.ask.bracket import Bracket
 
 WAYS = {"right": 1.0, "left": -1.0}
 """Names and signs of the two ways."""
@@ -81,6 +86,42 @@ def borne_words(both: Mapping[str, float]) -> str:
 def without_mass(problem: Problem) -> str:
     """Say what lies on it and is not pushed."""
     return "; fill and loads on the road are not pushed" if bears_road(problem) else ""
+
+
+def pushed_each_way(problem: Problem, share: float) -> tuple[Problem, ...]:
+    """Return a problem pushed to the right, and to the left; see `pushed`."""
+    PUSH.require("push", share)
+    note = f"pushed by {share:g} g to the "
+    return tuple(
+        replace(
+            problem,
+            dead=(*problem.dead, push_on_all(problem, [sign * share, 0.0])),
+            notes=(
+                *problem.notes,
+                f"{note}{way}, where it falls first{without_mass(problem)}",
+            ),
+        )
+        for way, sign in WAYS.items()
+    )
+
+
+def first_to_fall(answers: Sequence[Bracket[Any]]) -> Bracket[Any]:
+    """Return the bracket of pushes each way in which it falls first; of two alike the first.
+
+    Raises `InputError`: Where it stands between two values, or again beyond one.
+    """
+
+    def stands(answer: Bracket[Any]) -> float:
+        low, high = answer.low, answer.high
+        if answer.stands == "low":
+            return -math.inf if low is None else math.inf if high is None else high
+        return -math.inf if high is None else math.inf if low is None else -low
+
+    for answer in answers:
+        many = [each for one in answer.intervals or () for each in (one.low, one.high) if each]
+        allowed = "left out: it stands between several values, of which each way has its own"
+        require(len(many) < 2, "push", "given", allowed)
+    return min(answers, key=lambda answer: round(stands(answer), DIGITS))
 
 
 def pushed(problem: Problem, share: float) -> Problem:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import click
@@ -143,12 +143,15 @@ def bracket(
     )
     if sought:
         refuse({"eta": given.eta, "ratio": given.ratio}, why="left out: the least is sought")
+    push, loading = loading.push, replace(loading, push=None)
+    allowed = "left out beside --vehicle" if crosses else "left out: it is sought"
+    require(push is None or not (crosses or over == "push"), "--push", push, allowed)
     problem = anything_asked(
         scene, given, loading, spatial=spatial, tilts=over == "tilt", thick=not sought,
         sought=sought,
     )  # fmt: skip
     if problem.in_space:
-        refuse({**asdict(crossed), "proof": proof})
+        refuse({**asdict(crossed), "proof": proof, "push": push})
     elif crosses:
         usual = {"--over": over in {None, "load"}, "--within": within is None,
                  "--method": method in {"auto", "limit"}, "--set": settings is None,
@@ -156,16 +159,22 @@ def bracket(
         cross(problem, crossed, usual, as_json=as_json)
         return
     with named_options(), progress() as report:
-        answer = ask_bracket(
-            problem,
-            over=over,
-            within=within,
+        options = Options(
             method=method,
             tol=tol,
             settings=settings_of(settings),
             reduce=reduce,
             progress=report,
         )
+        if push is None:
+            answer = ask_bracket(problem, over=over, within=within, **options)
+        else:
+            from blocksim.ask.push import first_to_fall, pushed_each_way
+
+            ways = pushed_each_way(problem, push)
+            answer = first_to_fall(
+                [ask_bracket(each, over=over, within=within, **options) for each in ways]
+            )
     write_proof(answer.method, () if proof is None else answer.proofs, proof)
     if crossed.out is not None and not problem.in_space:
         write_curves(problem, answer.over, crossed.out, silent=as_json)
