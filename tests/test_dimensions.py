@@ -82,6 +82,7 @@ def test_an_engineers_arch_in_one_command() -> None:
     assert arch["eta_limit"] == pytest.approx(eta, rel=1e-12)
 
 
+@pytest.mark.usefixtures("wide_window")
 def test_words_give_both_forms() -> None:
     said = " ".join(inside("check", *ASKED, "--unit-weight", "22").stdout.split())
     assert "alpha 73.7398 deg, eta 0.102467, mu 0.700208, 31 voussoirs" in said

@@ -104,7 +104,7 @@ def missing(shown: list[str], printed: str) -> str | None:
             skip = True
             continue
         whole = not line.endswith("...")
-        start = line.removesuffix("...")
+        start = line.removesuffix("...").rstrip()
         places = range(at, len(lines) if skip else min(at + 1, len(lines)))
         fits = (
             n for n in places if lines[n] == line or (not whole and lines[n].startswith(start))
@@ -112,6 +112,9 @@ def missing(shown: list[str], printed: str) -> str | None:
         at, skip = next(fits, -1) + 1, False
         if not at:
             return line
+        # What is left out of a line goes on below it.
+        while not whole and at < len(lines) and lines[at].startswith(10 * " "):
+            at += 1
     return None if skip or not shown or at == len(lines) else f"more than {shown[-1]}"
 
 

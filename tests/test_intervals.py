@@ -116,6 +116,7 @@ def test_a_load_that_is_needed_has_two_ends(method: str, tmp_path: Path) -> None
     assert (told["low"], told["high"]) == (found["high"]["stands"], found["high"]["falls"])
 
 
+@pytest.mark.usefixtures("wide_window")
 def test_both_ends_are_told_in_words(tmp_path: Path) -> None:
     words = asked(seesaw(0.32, 0.64), "load", tmp_path).stdout
     assert "  stands  from 0.32 up to 0.64\n" in words

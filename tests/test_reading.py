@@ -28,6 +28,8 @@ from running import inside
 from blocksim import InputError, Problem, bracket, check, load_structure, structure_of
 from blocksim.reading.asked import Reading
 
+pytestmark = pytest.mark.usefixtures("wide_window")
+
 WALL = wall()
 """40 polygons."""
 

@@ -139,6 +139,7 @@ def test_a_portal_under_fill_is_held_by_what_it_weighs() -> None:
     assert reaction(problem)[1] == pytest.approx(own + fill + 12_000, rel=1e-9)
 
 
+@pytest.mark.usefixtures("wide_window")
 def test_the_command_line_says_the_same() -> None:
     done = inside(
         "check",
@@ -418,6 +419,7 @@ def test_what_bears_a_road_stands_upright(turn: tuple[str, ...], more: tuple[str
     assert inside("check", *line, "--method", "limit").returncode == 0
 
 
+@pytest.mark.usefixtures("wide_window")
 def test_what_has_no_mass_is_said_to_be_neither_pushed_nor_shaken() -> None:
     line = "check", "--span", "8", "--rise", "2.5", "--thickness", "0.5", "--mu", "0.7"
     push = *line, "--push", "0.1"

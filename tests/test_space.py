@@ -514,9 +514,25 @@ def test_a_column_that_leans_falls_where_it_would_turn_over_its_edge(lean: float
     half = math.tan(math.radians(lean)) * 1.5
     for share, verdict in ((1 + 1e-6, "STANDS"), (1 - 1e-6, "COLLAPSES")):
         depth = f"depth={2 * half * share:.12g}"
-        asked = f"check column --mu 0.9 --with {depth} --with drum_height=0.5 --lean {lean}"
-        asked += " --spatial"
-        assert inside(*asked.split()).stdout.startswith(verdict)
+        asked = f"check column --mu 0.9 --with {depth} --with drum_height=0.5"
+        tilted = (f"--tilt {lean} --azimuth {way} --spatial" for way in (90, -90))
+        for acts in (f"--lean {lean}", f"--lean {lean} --spatial", *tilted):
+            assert inside(*asked.split(), *acts.split()).stdout.startswith(verdict), acts
+
+
+@pytest.mark.parametrize("tilt", [0.0, -8.0])
+def test_a_lean_is_bracketed_in_space_unless_an_engine_is_asked_for(tilt: float) -> None:
+    """A column of 3 m, 0.4 m deep: tan(lean) = cos(tilt) 0.4 / 3, as it tilts in its plane."""
+    given = {"depth": 0.4, "drums": 6, "drum_height": 0.5, "width": 1.0}
+    column = blocksim.Column(**given, friction=0.9).problem().tilted(math.radians(tilt))
+    found = blocksim.bracket(column, over="lean")
+    expected = math.degrees(math.atan(math.cos(math.radians(tilt)) * 0.4 / 3))
+    assert found.method == "limit"
+    assert found.confirmed
+    assert found.limit == pytest.approx(expected, rel=1e-6)
+    assert blocksim.check(column.leaning(math.radians(expected + 0.01))).method == "limit"
+    asked = blocksim.ask.methods.choose("pybullet", problem=column.leaning(0.1))
+    assert asked.is_spatial
 
 
 def test_a_picture_shows_the_verdict_and_what_joints_do(tmp_path: Path) -> None:

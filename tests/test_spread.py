@@ -36,6 +36,8 @@ from blocksim.ask.spread import Spreading
 from blocksim.engines.moving import OnMovingSupports
 from blocksim.limit.spreading import follow
 
+pytestmark = pytest.mark.usefixtures("wide_window")
+
 SPREAD = ("spread_90_12_20", "spread_90_15_20", "spread_90_20_20")
 OF_SPAN = (0.01668, 0.05393, 0.15252)
 

@@ -226,6 +226,7 @@ def test_sheets_of_cells(cells: list[Any]) -> None:
     assert found[1] == found[2]
 
 
+@pytest.mark.usefixtures("wide_window")
 @pytest.mark.parametrize("name", ["a\x1b[2Jb", "a\nwrote b", "\u202ea", "[red]", "=1"])
 def test_names_of_files(name: str, tmp_path: Path) -> None:
     source = written(tmp_path, PLAIN)

@@ -28,6 +28,8 @@ from blocksim.suite.families import LEVELS, Family, Question, families
 from blocksim.suite.scene import acting, bodies_of
 from blocksim.suite.timed import Motion
 
+pytestmark = pytest.mark.usefixtures("wide_window")
+
 G = 9.81
 ENGINES = Path(__file__).parent.parent / "docs" / "examples" / "engines"
 STANDING = {name: each for name, each in questions().items() if isinstance(each, Question)}

@@ -20,6 +20,8 @@ from blocksim.ask.rest import FAR, SPEED, let_go
 from blocksim.limit.starting import Start, may_start, rates_of
 from blocksim.view.sheet import answer_sheet
 
+pytestmark = pytest.mark.usefixtures("wide_window")
+
 study = import_module("analysis.two_answers")
 FIGURES = Path(__file__).parent.parent / "analysis" / "figures"
 

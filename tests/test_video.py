@@ -33,6 +33,8 @@ from blocksim.view.style import JOINTS, THRUST
 from blocksim.view.timeline import SEEN
 from blocksim.view.video import render
 
+pytestmark = pytest.mark.usefixtures("wide_window")
+
 ARCH = Arch(half_angle=math.pi / 2, eta=0.3, voussoirs=6, radius=2.0, depth=1.0)
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple, Unpack, cast
 
 from blocksim.ask.answer import Check as Check
-from blocksim.ask.methods import choose, chosen_words, merged, reduces
+from blocksim.ask.methods import asked_as, choose, chosen_words, merged, reduces
 from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
 from blocksim.ask.rest import require_rest, rest_of
 from blocksim.ask.statics import (
@@ -70,7 +70,7 @@ def check(
     """
     started = time.perf_counter()
     given = taken(options, "tol", "confirm")
-    problem = cast("Problem[Any]", problem_of(asked))
+    problem = asked_as(cast("Problem[Any]", problem_of(asked)), given.method)
     chosen = choose(given.method, problem=problem, settings=given.settings, reduce=given.reduce)
     if must_rest:
         require_rest(problem)

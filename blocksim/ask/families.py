@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Generic, Literal
@@ -165,9 +165,7 @@ def _over_tilt(problem: Problem[Any]) -> Family[Any]:
             found = standing_at(problem.tilted, turns)
         else:
             found = over_tilt(problem, 0.0, math.pi / 2)
-        return tuple(
-            Interval(low=math.degrees(each.low), high=math.degrees(each.high)) for each in found
-        )
+        return _in_degrees(found)
 
     return Family(
         problem=problem,
@@ -187,6 +185,39 @@ def _over_lean(problem: Problem) -> Family:
         unit="deg",
         at=lambda value: problem.leaning(math.radians(value)),
         high=LEANEST,
+    )
+
+
+def over_lean_of_prisms(problem: Problem) -> Family[Any]:
+    """Return the family over lean that limit analysis knows: of the same blocks in space.
+
+    Raises
+    ------
+    InputError
+        As of `blocksim.blocks.space.extruded.extruded`.
+    """
+    from blocksim.blocks.space.extruded import extruded
+
+    require_upright(problem, "--over", "lean")
+
+    def at(value: float) -> Problem[Any]:
+        return extruded(problem.leaning(math.radians(value)))
+
+    def standing() -> tuple[Interval, ...]:
+        if problem.gravity[0]:
+            return standing_at(at, np.linspace(0.0, LEANEST, TRIED).tolist())
+        # Out of the plane is against y.
+        tilting = replace(at(0.0), azimuth=-math.pi / 2)
+        return _in_degrees(over_tilt(tilting, 0.0, math.pi / 2))
+
+    return Family(
+        problem=at(0.0), name="lean", unit="deg", at=at, high=LEANEST, standing=standing
+    )
+
+
+def _in_degrees(found: Sequence[Interval]) -> tuple[Interval, ...]:
+    return tuple(
+        Interval(low=math.degrees(each.low), high=math.degrees(each.high)) for each in found
     )
 
 

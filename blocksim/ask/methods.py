@@ -98,6 +98,29 @@ def choose(
     return chosen
 
 
+def leaves_to_limit(method: str | Method) -> bool:
+    """Tell whether limit analysis may answer: it is asked, or `auto`."""
+    return method in {"auto", "limit"}
+
+
+def asked_as(problem: Problem[Any], method: str | Method) -> Problem[Any]:
+    """Return what a method is asked about: prisms in space where a problem of the plane leans.
+
+    Limit analysis is exact there. What has no prisms (ground that shakes, blocks that crush)
+    is left to engines by `auto`.
+    """
+    if problem.in_space or problem.is_planar or not leaves_to_limit(method):
+        return problem
+    from blocksim.blocks.space.extruded import extruded
+
+    try:
+        return extruded(problem)
+    except InputError:
+        if method == "limit":
+            raise
+        return problem
+
+
 def _cheapest(tol: float, problem: Problem[Any] | None, *, moving: bool) -> Method:
     """Return the cheapest method that can answer."""
     # Of engines of one's own it is not known which is right, nor how dear they are.

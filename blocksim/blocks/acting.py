@@ -15,6 +15,9 @@ from blocksim.common.checks import COORDINATE, FACTOR, FORCE, require_all
 if TYPE_CHECKING:
     from blocksim.blocks.problem import Problem
 
+STRAIGHT = 1e-15
+"""Share of gravity that rounding leaves aside where it pulls straight down."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Load:
@@ -83,3 +86,10 @@ def tilt_and_lean(problem: Problem[Any]) -> tuple[float, float]:
         return math.degrees(math.atan2(math.hypot(x, y), 0.0 - z)), 0.0
     # Where nothing pulls in the plane, 0.0 - y is no -0.0: it is not upside down.
     return math.degrees(math.atan2(x, 0.0 - y)), math.degrees(math.atan2(z, math.hypot(x, y)))
+
+
+def towards(problem: Problem[Any]) -> float:
+    """Return towards where gravity in space leans, or else would as a table tilts [deg]."""
+    x, y, _ = problem.gravity.tolist()
+    leans = math.hypot(x, y) > STRAIGHT
+    return round(math.degrees(math.atan2(y, x) if leans else problem.azimuth), 12)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import platform
 
+import click
+
 from blocksim import __version__
 from blocksim.ask import doctor as installed
 from blocksim.ask.methods import METHODS
@@ -32,4 +34,5 @@ def cite(
 ) -> None:
     """Print BibTeX of blocksim, of the paper, and of what methods rest on."""
     with named_options():
-        say(*installed.cite(*methods or []).splitlines())
+        # It is for programs: no line of it is folded.
+        click.echo(installed.cite(*methods or []))

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import re
+import shutil
 import sys
+import textwrap
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
@@ -17,6 +21,12 @@ from blocksim.common.words import printable
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+COLOURS = {"STANDS": "green", "COLLAPSES": "red", "UNDECIDED": "yellow"}
+"""Of the word with which an answer begins."""
+_LABEL = re.compile(r"  \S{1,7} +(?=\S)|\s*")
+_UNIT = re.compile(r"(?<=\d) (?=[A-Za-z%])")
+"""What is between a number and what it counts, where no line ends."""
 
 
 def progress() -> AbstractContextManager[Progress]:
@@ -83,12 +93,28 @@ def answer_with(
 def say(*lines: str) -> None:
     """Print lines on standard output, with nothing in them that a terminal would obey.
 
-    On a terminal they are folded at the window's edge, and verdicts have colours.
+    They are folded at the window's edge, at 80 characters where there is none; on a terminal
+    verdicts have colours.
     """
-    shown = [printable(line) for line in lines]
-    # None where it was closed.
-    if sys.stdout and sys.stdout.isatty():
-        from blocksim.cli.terminal import fitted
+    click.echo("\n".join(fitted([printable(line) for line in lines])))
 
-        shown = fitted(shown)
-    click.echo("\n".join(shown))
+
+def fitted(lines: Iterable[str]) -> list[str]:
+    """Return lines folded at the width there is; what follows hangs below a line's words."""
+    width = shutil.get_terminal_size().columns
+    # None where it was closed.
+    coloured = sys.stdout and sys.stdout.isatty() and "NO_COLOR" not in os.environ
+    shown: list[str] = []
+    for line in lines:
+        label = _LABEL.match(line)
+        indent = " " * (len(label[0]) if label and label[0] else 2)
+        folded = textwrap.wrap(
+            _UNIT.sub("\xa0", line), width, subsequent_indent=indent, break_on_hyphens=False,
+            break_long_words=False, drop_whitespace=True, replace_whitespace=False,
+        )  # fmt: skip
+        folded = [each.replace("\xa0", " ") for each in folded]
+        word, space, rest = (folded or [""])[0].partition(" ")
+        if word in COLOURS and coloured:
+            folded[0] = click.style(word, fg=COLOURS[word], bold=True) + space + rest
+        shown += folded or [""]
+    return shown

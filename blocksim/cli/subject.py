@@ -58,26 +58,38 @@ def anything_asked(
     `spatial`: Whether blocks of the plane are asked as prisms.
     `tilts`: Whether the question tilts them.
     """
+    # Prisms tilt in space, towards any side; what is of the plane tilts in it.
+    late = spatial and loading.azimuth is not None
+    acting = replace(loading, tilt=None) if late else loading
     if scene is None:
         found = arch_asked(given, thick=thick, sought=sought, **needed)
-        if loading.given or given.lean is not None:
+        if acting.given or given.lean is not None:
             from blocksim.cli.road import loaded
 
-            found = loaded(found, Given(lean=given.lean), loading)
+            found = loaded(found, Given(lean=given.lean), acting)
     else:
         # An arch by its options is answered sooner than readers of files are loaded.
         from blocksim.cli.structures import structure
 
         require_given(**needed)
-        found = structure(scene, given, loading)
+        found = structure(scene, given, acting)
     in_space = found.in_space or spatial
     turned = in_space and (tilts or loading.tilt is not None)
     allowed = (
         "left out, or --tilt beside it" if in_space else "left out: it is of blocks in space"
     )
     require(turned or loading.azimuth is None, "--azimuth", loading.azimuth, allowed)
-    if found.in_space or not spatial:
+    if not spatial:
         return found
+    from blocksim.blocks.road import require_upright
     from blocksim.blocks.space.extruded import extruded
 
-    return replace(extruded(found), azimuth=math.radians(loading.azimuth or 0.0))
+    if late or tilts:
+        # Prisms do not know what of their loads lies on a road.
+        name, turn = (
+            ("--over", "tilt") if tilts else ("--tilt", math.radians(loading.tilt or 0.0))
+        )
+        require_upright(found, name, turn)
+    made = found if found.in_space else extruded(found)
+    made = replace(made, azimuth=math.radians(loading.azimuth or 0.0))
+    return made.tilted(math.radians(loading.tilt)) if late and loading.tilt else made

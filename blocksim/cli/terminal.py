@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import re
-import shutil
 import sys
 import textwrap
 import time
-from collections.abc import Container, Generator, Sequence
+from collections.abc import Container, Generator
 from contextlib import contextmanager
 
 import click
@@ -23,27 +20,6 @@ WIDE = 128
 """Characters in a line from which on no cell of a table has to be folded."""
 MOMENT = 0.5
 """What takes no longer has no bar [s]."""
-COLOURS = {"STANDS": "green", "COLLAPSES": "red", "UNDECIDED": "yellow"}
-"""Of the word with which an answer begins."""
-_LABEL = re.compile(r"  \S{1,7} +(?=\S)|\s*")
-
-
-def fitted(lines: Sequence[str]) -> list[str]:
-    """Return lines as a terminal shows them: folded at its width, verdicts in colour."""
-    width = shutil.get_terminal_size().columns
-    shown: list[str] = []
-    for line in lines:
-        label = _LABEL.match(line)
-        indent = " " * (len(label[0]) if label and label[0] else 2)
-        folded = textwrap.wrap(
-            line, width, subsequent_indent=indent, break_on_hyphens=False,
-            break_long_words=False, drop_whitespace=True, replace_whitespace=False,
-        )  # fmt: skip
-        word, space, rest = (folded or [""])[0].partition(" ")
-        if word in COLOURS and "NO_COLOR" not in os.environ:
-            folded[0] = click.style(word, fg=COLOURS[word], bold=True) + space + rest
-        shown += folded or [""]
-    return shown
 
 
 @contextmanager

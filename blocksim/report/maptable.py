@@ -83,7 +83,10 @@ def _points(weight: Weight) -> Iterator[Landmark]:
 def map_lines(weight: Weight) -> list[str]:
     """Return Table 1, the special angles and the rates of modes as text; angles in radians."""
     marks, special = landmark_points(weight), special_points(weight)
-    lines = [f"TABLE 1  (weight {weight})", _row("", [NAMES[each.name] for each in marks])]
+    lines = [
+        f"TABLE 1  (weight {weight})",
+        _row("", [NAMES[each.name] for each in marks], 9, 18),
+    ]
     for symbol, values in (
         ("eta", [each.eta for each in marks]),
         ("mu", [each.mu for each in marks]),
@@ -92,8 +95,8 @@ def map_lines(weight: Weight) -> list[str]:
         ("beta_r", [each.beta_r for each in marks]),
         ("beta_s", [each.beta_s or 0.0 for each in marks]),
     ):
-        lines.append(_row(symbol, [f"{value:.16g}" for value in values]))
-    lines.append(_row("modes", [" ".join(each.modes) for each in marks]))
+        lines.append(_row(symbol, [f"{value:.14g}" for value in values], 9, 18))
+    lines.append(_row("modes", [" ".join(each.modes) for each in marks], 9, 18))
     lines += ["", "SPECIAL ANGLES  (unbounded friction)"]
     lines += [
         f"  {each.name:17}{each.half_angle:<20.16g}{math.degrees(each.half_angle):.2f} deg, "
@@ -101,10 +104,10 @@ def map_lines(weight: Weight) -> list[str]:
         for each in special
     ]
     lines += ["", "RATES OF MODES  (of a joint of either half; all joints add up to 1)"]
-    lines.append(_row("", list(COLUMNS), 16))
+    lines += [_row("", list(words)) for words in zip(*map(str.split, COLUMNS), strict=True)]
     for point in (*marks, *special):
         for mode in point.modes:
-            lines.append(_row(f"{point.name} {mode}", _rates(point, mode, weight), 16))
+            lines.append(_row(f"{point.name} {mode}", _rates(point, mode, weight)))
     lines.append("Sliding is associated: a joint that slides opens by mu times the slip, too.")
     return lines
 
@@ -114,5 +117,5 @@ def _rates(point: Landmark, mode: Mode, weight: Weight) -> list[str]:
     return [f"{value:.8f}" if (value := values[f"{a}_{b}"]) else "-" for a, b in RATES]
 
 
-def _row(name: str, cells: list[str], width: int = 20) -> str:
-    return f"  {name:17}" + "".join(f"{cell:{width}}" for cell in cells).rstrip()
+def _row(name: str, cells: list[str], first: int = 19, width: int = 12) -> str:
+    return f"  {name}".ljust(first) + "".join(f"{cell:{width}}" for cell in cells).rstrip()

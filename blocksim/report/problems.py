@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import At, Line, friction_angle, line_of
-from blocksim.blocks.acting import tilt_and_lean
+from blocksim.blocks.acting import tilt_and_lean, towards
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.road import fill_of
 from blocksim.blocks.shaking import shaking_record
@@ -52,7 +52,7 @@ def problem_record(problem: Problem[Any], over: str | None = None) -> ProblemRec
         "friction_angle_deg": friction_angle(problem.mu),
         "lean_deg": None if spatial else lean,
         "tilt_deg": tilt,
-        "azimuth_deg": math.degrees(problem.azimuth) if spatial else None,
+        "azimuth_deg": towards(problem) if spatial else None,
         "gravity_m_s2": (problem.gravity * STANDARD_GRAVITY).tolist(),
         "load": problem.load,
         "strength_MPa": None if problem.strength is None else problem.strength / 1e6,
@@ -184,8 +184,8 @@ def described(problem: Problem[Any]) -> str:
     said.append(f"in space, mu {problem.mu:g}" if spatial else f"mu {problem.mu:g}")
     if tilt:
         said.append(f"tilted {tilt:g} deg")
-    if spatial and problem.azimuth:
-        said.append(f"towards {math.degrees(problem.azimuth):g} deg from x")
+    if spatial and towards(problem):
+        said.append(f"towards {towards(problem):g} deg from x")
     if lean:
         said.append(f"gravity leans {lean:g} deg out of the plane")
     pull = math.hypot(*problem.gravity.tolist())

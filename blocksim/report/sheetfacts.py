@@ -9,7 +9,7 @@ import numpy as np
 
 from blocksim.arch.answers import ArchAnswer
 from blocksim.ask.check import Check
-from blocksim.blocks.acting import tilt_and_lean
+from blocksim.blocks.acting import tilt_and_lean, towards
 from blocksim.blocks.joints import joint_names
 from blocksim.blocks.maker import Kind, Table
 from blocksim.blocks.problem import Problem
@@ -170,7 +170,7 @@ def load_words(problem: Problem[Any]) -> list[str]:
     if abs(tilt) > 1e-9:
         where = "in the plane"
         if problem.in_space:
-            where = f"towards {math.degrees(problem.azimuth):.4g}° from x"
+            where = f"towards {towards(problem):.4g}° from x"
         words.append(f"Gravity is tilted by {tilt:.4g}° {where}.")
     if lean:
         words.append(f"Gravity leans {lean:.4g}° out of the plane.")
