@@ -39,14 +39,18 @@ SHORTEST = 1e-4
 """Least part of a step that counts as progress."""
 SMOOTH = 0.01
 """Smoothing of slip, over the root of that product."""
-CAREFUL = 0.1
-"""Least part of the product that a step with slip aims at."""
+CAREFUL = 0.1, 0.7
+"""Least part of the product that a step with slip aims at: at first, then where that leads
+nowhere."""
 
 
-def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Array, int]:
+def central_path(
+    step: Step, cones: Cones, *, dilates: bool, careful: float = CAREFUL[0]
+) -> tuple[Array, Array, int]:
     """Follow the central path.
 
     `dilates`: Whether friction does; Coulomb's must not be steep.
+    `careful`: Least part of the product that a step aims at, where friction does not dilate.
     Returns `x`, (3 blocks,): Accelerations.
     Returns `pressed`, (joints, 4 or 6): Forces along the edges.
     Returns `systems`: Banded systems factored.
@@ -73,7 +77,7 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
         _, wider, more = toward(0.0)
         ahead = _length(room, wider, forces, more)
         after = float(np.vdot(room + ahead * wider, forces + ahead * more)) / room.size
-        aim = max((after / product) ** 3, 0.0 if dilates else CAREFUL) * product
+        aim = max((after / product) ** 3, 0.0 if dilates else careful) * product
         way, wider, more = toward((aim - wider * more) / room)
         # Near its end the path is straight.
         bold = max(BOLD, 1 - product)

@@ -11,15 +11,14 @@ as much as the number of blocks.
 What each contact does is guessed, and mended until all forces and velocities agree with it
 (`active_set.py`). Guesses are taken in turn, until one leads to a solution:
 
-- what the contacts did in the last step, then the end of a short path from there
-  (`path_following.py`), of friction that is not steep;
+- what the contacts did in the last step;
 - from nothing, the solution for friction that dilates, to half of its digits (`interior.py`),
   then to the last (`associated.py`): of the two answers that Coulomb's may have, rest and
   motion, that is rest if there is any;
 - the end of an interior-point method for Coulomb friction, steep one taken to be less;
-- the end of a short path that begins at the last of these guesses, and from nothing of one
-  that begins at the first;
-- the end of a path that begins with all contacts apart.
+- of friction that is not steep, the end of that method with shorter steps, and what springs
+  make of it, then of the way of alternating directions from there (`alternating.py`);
+- the end of a path that begins with all contacts apart (`path_following.py`).
 """
 
 from __future__ import annotations
@@ -33,17 +32,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.active_set import by_active_set
+from blocksim.engines.contact.alternating import alternated, followed
 from blocksim.engines.contact.associated import augmented_lagrangian
 from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.coulomb import Contacts, Friction
-from blocksim.engines.contact.interior import central_path
-from blocksim.engines.contact.path_following import (
-    LAST_PIECES,
-    NEAREST_PIECES,
-    path_from_apart,
-    path_from_guess,
-)
+from blocksim.engines.contact.interior import CAREFUL, central_path
+from blocksim.engines.contact.path_following import path_from_apart
 from blocksim.engines.contact.step import Answer, Step
 
 EXACT = 1e-16
@@ -179,14 +174,10 @@ class ContactProblem:
         guess = Answer(x=x, forces=start.forces, contacts=start.contacts)
         yield _at_rest(step, guess)
         yield guess
-        yield path_from_guess(step, guess, LAST_PIECES)
         for tame in _tamed(step):
             if not tried.is_enough:
-                yield (guess := _coulomb(tame))
-        if not tried.is_enough:
-            yield path_from_guess(step, guess, LAST_PIECES)
-        if not tried.is_enough:
-            yield path_from_apart(step)
+                yield _coulomb(tame)
+        yield from _at_last(step, tried)
 
     def _from_nothing(self, step: Step, tried: _Tried) -> Iterator[Answer | None]:
         """Give what contacts may do at rest, the likeliest and cheapest first."""
@@ -203,15 +194,11 @@ class ContactProblem:
                 yield first
             yield answer
             yield from _parted(step, answer)
-        last = first
         for tame in _tamed(step):
-            yield (last := _coulomb(tame))
-        if not tried.is_enough:
-            yield path_from_guess(step, last, NEAREST_PIECES)
-        if not tried.is_enough:
-            yield path_from_guess(step, first)
-        if steep or not tried.is_enough:
+            yield _coulomb(tame)
+        if steep:
             yield path_from_apart(step)
+        yield from _at_last(step, tried)
 
 
 class _Tried:
@@ -285,10 +272,24 @@ def _tamed(step: Step) -> Iterator[Step]:
         yield replace(step, friction=step.friction.at_most(most))
 
 
-def _coulomb(step: Step) -> Answer:
+def _coulomb(step: Step, careful: float = CAREFUL[0]) -> Answer:
     """Return the end of the interior-point method for Coulomb friction."""
     cones = Cones.of(step)
-    return cones.answer(step, *central_path(step, cones, dilates=False))
+    return cones.answer(step, *central_path(step, cones, dilates=False, careful=careful))
+
+
+def _at_last(step: Step, tried: _Tried) -> Iterator[Answer | None]:
+    """Give what contacts may do where nothing cheaper tells."""
+    if not step.friction.some_steep and not tried.is_enough:
+        yield (guess := _coulomb(step, CAREFUL[1]))
+        if not tried.is_enough:
+            yield followed(step, guess.forces)
+        for found in alternated(step, guess.forces):
+            if tried.is_enough:
+                return
+            yield found
+    if not tried.is_enough:
+        yield path_from_apart(step)
 
 
 def _parted(step: Step, answer: Answer) -> Iterator[Answer]:
