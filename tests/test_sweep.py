@@ -67,6 +67,7 @@ def test_a_random_design_is_the_same_again_and_can_grow(tmp_path: Path) -> None:
     assert abs(below - 0.5) < 0.036
 
 
+@pytest.mark.usefixtures("wide_window")
 @pytest.mark.usefixtures("in_this_process")
 def test_the_command_keeps_the_contract(tmp_path: Path) -> None:
     done = blocksim(*written(tmp_path, GRID.replace("0.1]", "3]")))
