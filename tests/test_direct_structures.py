@@ -22,8 +22,10 @@ from worlds import (
 
 from analysis.structure_cases import ASIDE, MOST, Question, answered, questions
 from blocksim import Assembly, Joint, JointState, Problem, Verdict, equilibrium, structure_of
-from blocksim.engines.contact import banded, solver
+from blocksim.engines.contact import banded, interior, path_following, solver
+from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.geometry import Geometry
+from blocksim.engines.contact.step import Answer, Step
 from tests.certificates import certificate
 
 MOVED = [
@@ -322,6 +324,35 @@ def test_contacts_that_are_told_are_found_no_better_on_a_path(
     assert onset.verdict is Verdict.COLLAPSES
 
 
+def test_a_path_from_a_guess_is_short(monkeypatch: pytest.MonkeyPatch) -> None:
+    # From all apart it takes 873 systems. Where blocks slide there may be several answers; what
+    # is found has to be one.
+    systems: list[int] = []
+
+    def central_path(
+        step: Step, cones: Cones, *, dilates: bool, **_: float
+    ) -> tuple[Any, Any, int]:
+        if dilates:
+            return interior.central_path(step, cones, dilates=True)
+        return np.zeros_like(step.free), np.zeros_like(cones.offset), 0
+
+    def path_from_guess(step: Step, guess: Answer, *most: int) -> Answer | None:
+        end = path_following.path_from_guess(step, guess, *most)
+        systems.append(end.systems if end else 0)
+        return end
+
+    monkeypatch.setattr(solver, "central_path", central_path)
+    monkeypatch.setattr(solver, "path_from_guess", path_from_guess)
+    monkeypatch.setattr(solver, "path_from_apart", lambda *_: pytest.fail("from all apart"))
+    world = world_of(falling_wall(), 1e-3)
+    assert np.abs(world.hold(1)).max() > 0.1
+    assert (world.quality().residual or 0.0) < 1e-8
+    # The first path begins at the guess that is none here, and leads nowhere.
+    assert len(systems) == 2
+    assert systems[0] == 0
+    assert 50 < systems[1] < 300
+
+
 @pytest.mark.parametrize("mu", [20.0, math.inf])
 def test_rest_is_found_though_what_contacts_do_is_not(
     mu: float, monkeypatch: pytest.MonkeyPatch
@@ -329,6 +360,7 @@ def test_rest_is_found_though_what_contacts_do_is_not(
     """Steep friction does not tell it by its forces; nor is there any need to know."""
     for name, found in (
         ("by_active_set", []),
+        ("path_from_guess", None),
         ("path_from_apart", None),
     ):
         monkeypatch.setattr(solver, name, lambda *_, found=found: found)

@@ -11,11 +11,13 @@ as much as the number of blocks.
 What each contact does is guessed, and mended until all forces and velocities agree with it
 (`active_set.py`). Guesses are taken in turn, until one leads to a solution:
 
-- what the contacts did in the last step;
+- what the contacts did in the last step, then the end of a short path from there
+  (`path_following.py`), of friction that is not steep;
 - from nothing, the solution for friction that dilates, to half of its digits (`interior.py`),
   then to the last (`associated.py`): of the two answers that Coulomb's may have, rest and
   motion, that is rest if there is any;
 - the end of an interior-point method for Coulomb friction, steep one taken to be less;
+- the end of a short path that begins there;
 - of friction that is not steep, the end of that method with shorter steps, and what springs
   make of it, then of the way of alternating directions from there (`alternating.py`);
 - the end of a path that begins with all contacts apart (`path_following.py`).
@@ -38,7 +40,12 @@ from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.coulomb import Contacts, Friction
 from blocksim.engines.contact.interior import CAREFUL, central_path
-from blocksim.engines.contact.path_following import path_from_apart
+from blocksim.engines.contact.path_following import (
+    LAST_PIECES,
+    NEAREST_PIECES,
+    path_from_apart,
+    path_from_guess,
+)
 from blocksim.engines.contact.step import Answer, Step
 
 EXACT = 1e-16
@@ -174,9 +181,12 @@ class ContactProblem:
         guess = Answer(x=x, forces=start.forces, contacts=start.contacts)
         yield _at_rest(step, guess)
         yield guess
+        yield path_from_guess(step, guess, LAST_PIECES)
         for tame in _tamed(step):
             if not tried.is_enough:
-                yield _coulomb(tame)
+                yield (guess := _coulomb(tame))
+        if not tried.is_enough:
+            yield path_from_guess(step, guess, LAST_PIECES)
         yield from _at_last(step, tried)
 
     def _from_nothing(self, step: Step, tried: _Tried) -> Iterator[Answer | None]:
@@ -194,8 +204,13 @@ class ContactProblem:
                 yield first
             yield answer
             yield from _parted(step, answer)
+        last = first
         for tame in _tamed(step):
-            yield _coulomb(tame)
+            yield (last := _coulomb(tame))
+        if not tried.is_enough:
+            yield path_from_guess(step, last, NEAREST_PIECES)
+        if not tried.is_enough:
+            yield path_from_guess(step, first)
         if steep:
             yield path_from_apart(step)
         yield from _at_last(step, tried)
