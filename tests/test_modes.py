@@ -81,6 +81,7 @@ def test_arches_below_their_limit_have_a_mode(angle: float, mu: float, ratio: fl
     assert sum(joint.state is not JointState.CLOSED for joint in seen.joints) >= 5
 
 
+@pytest.mark.usefixtures("wide_window")
 def test_words_tell_which_arch_which_thickness_and_which_mode() -> None:
     asked = ["--alpha", "90", "--mu", "0.3", "--eta", "0.1", "--voussoirs", "27"]
     told = CliRunner().invoke(app, ["check", *asked]).output

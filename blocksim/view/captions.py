@@ -42,7 +42,12 @@ def gravity_arrow(
     down = np.array([0.0, -1.0, 0.0])
     ends = np.stack([0 * pull, down, pull / np.linalg.norm(pull)])
     start, *seen = view.places(AHEAD * ends)
-    straight, way = ((end - start) / np.hypot(*(end - start)) for end in seen)
+    ways = np.array(seen) - start
+    lengths = np.hypot(*ways.T)
+    if not lengths.min() > 0:
+        # Blocks are so far apart that none has a width.
+        return [], []
+    straight, way = ways / lengths[:, None]
     if np.allclose(straight, way, atol=1e-9, rtol=0):
         return [], []
     middle = np.array([panel.x + panel.width - 64 * size, panel.y + panel.height - 36 * size])

@@ -55,9 +55,14 @@ NEAREST_PIECES, NEAR_PIECES, LAST_PIECES = 2, 3, 1
 others all apart is then as near; of those from the last step that arrive 95 % take 0.9."""
 
 
-def path_from_apart(step: Step) -> Answer | None:
-    """Balance stiff springs, from all contacts apart."""
-    glued = -STIFF * step.velocities(step.free)
+def path_from_apart(step: Step, preload: Array | None = None) -> Answer | None:
+    """Balance stiff springs, from all contacts apart.
+
+    Their forces without motion may be given: near the limit it is they that tell what contacts
+    do, to more digits than springs yield.
+    """
+    preload = np.zeros_like(step.rates) if preload is None else preload
+    glued = preload - STIFF * step.velocities(step.free)
     shares = np.random.default_rng(0).uniform(1.0, 2.0, (len(glued), 2))
     push = np.concatenate([STIFF * shares, np.zeros_like(shares)], axis=1)
     apart = float(np.maximum(glued[:, :2] / push[:, :2], 0.0).max(initial=0.0))
@@ -70,7 +75,7 @@ def path_from_apart(step: Step) -> Answer | None:
         pull=np.zeros_like(step.free),
         left=apart,
     )
-    return _end(step, start, np.zeros_like(glued), most)
+    return _end(step, start, preload, most)
 
 
 def path_from_guess(step: Step, guess: Answer, most: int = NEAR_PIECES) -> Answer | None:

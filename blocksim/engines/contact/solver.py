@@ -20,7 +20,8 @@ What each contact does is guessed, and mended until all forces and velocities ag
 - the end of a short path that begins there;
 - of friction that is not steep, the end of that method with shorter steps, and what springs
   make of it, then of the way of alternating directions from there (`alternating.py`);
-- the end of a path that begins with all contacts apart (`path_following.py`).
+- the end of a path that begins with all contacts apart (`path_following.py`), of steep
+  friction with the forces found so far first.
 """
 
 from __future__ import annotations
@@ -212,6 +213,8 @@ class ContactProblem:
         if not tried.is_enough:
             yield path_from_guess(step, first)
         if steep:
+            if not tried.is_enough:
+                yield path_from_apart(step, last.forces)
             yield path_from_apart(step)
         yield from _at_last(step, tried)
 
