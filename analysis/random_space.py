@@ -320,7 +320,7 @@ def main(out: Path, *, quick: bool = False) -> str:
     stacks = range(PROBLEMS, PROBLEMS + len(FAMILIES) * STACKS)
     seeds = [*range(PROBLEMS), *(each for each in stacks if family_of(each) is leaning)]
     rows = [asked(seed) for seed in (seeds[:QUICK] if quick else seeds)]
-    write_rows(out / "random_space.csv", [asdict(row) for row in rows])
+    write_rows(out / "random_space.csv.gz", [asdict(row) for row in rows])
     return table(rows)
 
 

@@ -139,7 +139,7 @@ def main(out: Path, *, quick: bool = False, method: str = "", only: str = "") ->
         for number, _ in enumerate(questions(name, each))
     ]
     rows = answers(out / "space_cases.jsonl", asked, ask, 1)
-    write_rows(out / "space_cases.csv", rows)
+    write_rows(out / "space_cases.csv.gz", rows)
     return table(rows)
 
 
