@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from blocksim.blocks.assembly import SPATIAL, Array
-from blocksim.engines.faces import Side
+from blocksim.blocks.assembly import SPATIAL, Array, Assembly
+from blocksim.engines.faces import LEDGE, Side
 
 PLATE = 0.15
 """Thickness of the box on a face, in units of the block's extent normal to it."""
@@ -157,3 +159,17 @@ def _box(size: list[float], centre: Array, angle: float) -> Box:
         centre=[*centre.tolist(), 0.0],
         quaternion=[0.0, 0.0, math.sin(angle / 2), math.cos(angle / 2)],
     )
+
+
+def uneven_depths(assembly: Assembly) -> Array:
+    """Depths of blocks, of two that touch one a little more, shape (blocks,), scaled."""
+    joints = assembly.joint_arrays
+    rank = np.zeros(len(assembly.blocks))
+    near: dict[int, set[int]] = defaultdict(set)
+    for one, other in zip(joints.before.tolist(), joints.after.tolist(), strict=True):
+        near[one].add(other)
+        near[other].add(one)
+    for index in range(len(rank)):
+        taken = {rank[other] for other in near[index] if 0 <= other < index}
+        rank[index] = next(k for k in itertools.count() if k not in taken)
+    return assembly.depths + 2 * LEDGE * rank / max(1.0, rank.max())

@@ -72,6 +72,7 @@ ENGINE = Engine(
     finest=1e-3,
     takes_forces=True,
     keeps_impulses=True,
+    contacts=4,
     chart={
         "tolerance": (1e-2, 1e-3),
         "step": (1 / 120, 1 / 480, 1 / 1920),

@@ -1,4 +1,7 @@
-"""Blocks in space as bodies of MuJoCo."""
+"""Blocks in space as bodies of MuJoCo: small balls at the corners of joints, on plates.
+
+Each ball touches its plate and nothing else: one point of contact, with a round cone.
+"""
 
 from __future__ import annotations
 
@@ -8,33 +11,92 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.engines.mujocoblocks import ORDER, Jointed
+from blocksim.engines.mujocoblocks import (
+    compiled,
+    let_touch,
+    library,
+    rubble_of,
+    spec_of,
+    with_body,
+)
 from blocksim.engines.polyhedra import Polyhedra
 
+BALL = 0.02
+"""Radius of a ball, over the spread of a joint's corners."""
+ORDER = [3, 0, 1, 2]
+"""MuJoCo's quaternions begin with the scalar."""
 
-class Spatial(Polyhedra, Jointed):
+
+class Spatial(Polyhedra):
     """The blocks of a problem in space as free bodies; see `mujocomotion`."""
 
     @property
-    def inertia(self) -> Array:  # type: ignore[override]
-        """Mass along each axis, and moments about a body's own, (blocks, 6)."""
-        return self.bodies.inertia
-
-    @property
     def masses(self) -> Array:
-        """The same of each velocity."""
-        return self.inertia.ravel()
+        """Inertia of each velocity: along the axes, and about a body's own."""
+        return self.bodies.inertia.ravel()
 
-    def release(self, body: Any) -> None:
-        """Let a body move."""
-        body.add_freejoint()
+    def _spec(self) -> tuple[Any, list[Any]]:
+        """Return a model of free bodies, without shapes, and the bodies."""
+        spec, found = spec_of(self.problem.gravity, self.masses), list[Any]()
+        turns = self.quaternions[:, ORDER]
+        for index, (mass, _, _, *moments) in enumerate(self.bodies.inertia.tolist()):
+            centre = self.bodies.built.centres[index].tolist()
+            body = with_body(spec, mass, moments, pos=centre, quat=turns[index].tolist())
+            body.add_freejoint()
+            found.append(body)
+        return spec, found
 
-    def pieces(self) -> tuple[list[tuple[int, Array]], dict[str, list[float]]]:
-        """Return the parts of blocks and of supports, and where the floor is."""
+    def joined(self, reaches: Array | None = None) -> Any:
+        """Return a model of bodies that touch at the corners of joints.
+
+        `reaches`, (points,): How far each corner reaches into its plate [size].
+        """
+        spec, bodies = self._spec()
+        bodies.append(spec.worldbody)
+        silent = {"contype": 0, "conaffinity": 0}
+        for touch, ways in zip(self.touches, self.at_joints(reaches), strict=True):
+            plate = touch.places.mean(axis=0) - touch.half[2] * touch.normal
+            centre, turn = self.within(touch.plate, plate, touch.axes)
+            bodies[touch.plate].add_geom(
+                name=f"plate {touch.joint}", type=library.mjtGeom.mjGEOM_BOX,
+                size=touch.half, pos=centre, quat=turn[ORDER].tolist(), **silent,
+            )  # fmt: skip
+            mu, ball = self.problem.friction[touch.joint], BALL * touch.spread
+            for at, (place, way) in enumerate(zip(touch.places, ways.tolist(), strict=True)):
+                centre, _ = self.within(
+                    touch.corners, place + (ball - way) * touch.normal, np.eye(3)
+                )
+                name = f"corner {touch.joint} {at}"
+                bodies[touch.corners].add_geom(
+                    name=name, type=library.mjtGeom.mjGEOM_SPHERE,
+                    size=[ball, 0.0, 0.0], pos=centre, **silent,
+                )  # fmt: skip
+                let_touch(spec, f"plate {touch.joint}", name, mu)
+        return compiled(spec)
+
+    def ways(self, pressures: Array) -> Array:
+        """Return how far contacts give way, (points,): as their force, and what moves there."""
+        inertia, place = self.bodies.inertia, self.bodies.built
+        found = np.zeros_like(pressures)
+        for touch, free in zip(self.touches, self.at_joints(found), strict=True):
+            for index in {touch.plate, touch.corners} - {SUPPORT}:
+                arms = touch.places - place.centres[index]
+                about = np.cross(arms, touch.normal) @ place.turns[index]
+                free[:] += 1 / inertia[index, 0] + (about**2 / inertia[index, 3:]).sum(axis=1)
+        return pressures * found
+
+    def rubble(self) -> Any:
+        """Return a model of the blocks as they are, what they stand on and the floor."""
+        spec, bodies = self._spec()
         hulls = self.bodies.hulls
-        known = zip(hulls.owner.tolist(), hulls.support.tolist(), hulls.corners, strict=True)
-        parts = [(at, each) for at, on, each in known if at != SUPPORT or on >= 0]
-        return parts, {"pos": [0.0, 0.0, self.level]}
+        known = [
+            (spec.worldbody if owner == SUPPORT else bodies[owner], corners)
+            for owner, support, corners in zip(
+                hulls.owner, hulls.support, hulls.corners, strict=True
+            )
+            if owner != SUPPORT or support >= 0
+        ]
+        return rubble_of(spec, known, {"pos": [0.0, 0.0, self.level]}, self.problem.mu)
 
     def poses(self, places: Array, zero: Array) -> Array:
         """Return centres and rotation vectors since they were built, (blocks, 6)."""

@@ -55,19 +55,6 @@ class Touch(NamedTuple):
     axes: Array
     spread: float
 
-    @classmethod
-    def of(
-        cls, joint: int, sides: tuple[int, int], sign: float, places: Array, normal: Array
-    ) -> Touch:
-        """Return what touches at a joint whose normal leads from the first side to the other.
-
-        `sign`: As the field.
-        """
-        plate, corners = sides if sign > 0 else sides[::-1]
-        spread = float(np.linalg.norm(places - places.mean(axis=0), axis=1).max())
-        axes = np.vstack([frame(sign * normal), sign * normal]).T
-        return cls(joint, plate, corners, sign, places, axes, max(spread, LEAST))
-
     @property
     def normal(self) -> Array:
         """Of the plate, towards the block with the corners, (3,)."""
@@ -80,34 +67,7 @@ class Touch(NamedTuple):
         return [wide, wide, THIN * self.spread / 2]
 
 
-class Touching:
-    """Bodies that touch at the corners of joints.
-
-    `frames`: Where bodies are built.
-    """
-
-    frames: Place
-
-    @cached_property
-    def touches(self) -> tuple[Touch, ...]:
-        """What touches at each joint."""
-        raise NotImplementedError
-
-    def at_joints(self, values: Array | None) -> list[Array]:
-        """Return values at the points of joints, (points,), for each touch; 0 where None."""
-        counts = [len(each.places) for each in self.touches]
-        every = np.zeros(sum(counts)) if values is None else values
-        ends = np.cumsum(counts).tolist()
-        return [every[end - count : end] for count, end in zip(counts, ends, strict=True)]
-
-    def within(self, index: int, place: Array, axes: Array) -> tuple[list[float], Array]:
-        """Return a place in the frame of a body, and its axes there as a quaternion, (4,)."""
-        origin, turn = (each[index] for each in self.frames)
-        own = Rotation.from_matrix(turn.T @ axes).as_quat()
-        return (turn.T @ (place - origin)).tolist(), own
-
-
-class Polyhedra(Touching):
+class Polyhedra:
     """Blocks of a problem: frames, masses, loads, energy, what touches, and when all may.
 
     Poses are centres [size] and rotation vectors since blocks were built, (blocks, 6).
@@ -119,7 +79,6 @@ class Polyhedra(Touching):
     def __init__(self, problem: Problem[SpatialAssembly]) -> None:
         self.problem, self.assembly = problem, problem.assembly
         self.bodies = Bodies(problem)
-        self.frames = self.bodies.built
         self.built = self.bodies.poses(self.bodies.built)
         hulls = self.bodies.hulls
         self.largest = LARGEST * float(hulls.thickness[hulls.owner != SUPPORT].min())
@@ -177,8 +136,26 @@ class Polyhedra(Touching):
         sign = 1.0
         if not self._has_face(joint, 1.0) and self._has_face(joint, -1.0):
             sign = -1.0
+        plate, corners = joint.before, joint.after
+        if sign < 0:
+            plate, corners = corners, plate
         places = joint.points / self.assembly.size
-        return Touch.of(at, (joint.before, joint.after), sign, places, joint.normal)
+        spread = float(np.linalg.norm(places - places.mean(axis=0), axis=1).max())
+        normal = sign * joint.normal
+        axes = np.vstack([frame(normal), normal]).T
+        return Touch(at, plate, corners, sign, places, axes, max(spread, LEAST))
+
+    def at_joints(self, values: Array | None) -> list[Array]:
+        """Return values at the points of joints, (points,), for each touch; 0 where None."""
+        counts = [len(each.places) for each in self.touches]
+        every = np.zeros(sum(counts)) if values is None else values
+        ends = np.cumsum(counts).tolist()
+        return [every[end - count : end] for count, end in zip(counts, ends, strict=True)]
+
+    def within(self, index: int, place: Array, axes: Array) -> tuple[list[float], Array]:
+        """Return a place in the frame of a body, and its axes there as a quaternion, (4,)."""
+        turn, origin = self.bodies.built.turns[index].T, self.bodies.built.centres[index]
+        return (turn @ (place - origin)).tolist(), Rotation.from_matrix(turn @ axes).as_quat()
 
     def _has_face(self, joint: FaceJoint, sign: float) -> bool:
         """Tell whether the block on a side of a joint has a face along it."""
