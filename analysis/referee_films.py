@@ -35,7 +35,7 @@ from blocksim.view.video import render
 KEPT = "referee_films.jsonl.gz"
 PLAIN = 2.0
 """Bounds by which what stands has moved if it is plainly wrong."""
-HEIGHT = 336
+HEIGHT = 316
 
 
 def asked() -> dict[str, Question]:
