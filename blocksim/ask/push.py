@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from blocksim.blocks.acting import push_on_all
+from blocksim.blocks.acting import push_on_all, with_push
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import bears_road
 from blocksim.common.checks import PUSH, require
@@ -90,19 +90,14 @@ def without_mass(problem: Problem) -> str:
 
 def pushed_each_way(problem: Problem, share: float) -> tuple[Problem, ...]:
     """Return a problem pushed to the right, and to the left; see `pushed`."""
+    return tuple(_pushed(problem, way, share, ", where it falls first") for way in WAYS)
+
+
+def _pushed(problem: Problem, way: str, share: float, why: str) -> Problem:
+    """Return a problem that is pushed one way, and says so."""
     PUSH.require("push", share)
-    note = f"pushed by {share:g} g to the "
-    return tuple(
-        replace(
-            problem,
-            dead=(*problem.dead, push_on_all(problem, [sign * share, 0.0])),
-            notes=(
-                *problem.notes,
-                f"{note}{way}, where it falls first{without_mass(problem)}",
-            ),
-        )
-        for way, sign in WAYS.items()
-    )
+    note = f"pushed by {share:g} g to the {way}{why}{without_mass(problem)}"
+    return replace(with_push(problem, WAYS[way] * share), notes=(*problem.notes, note))
 
 
 def first_to_fall(answers: Sequence[Bracket[Any]]) -> Bracket[Any]:
@@ -132,12 +127,8 @@ def pushed(problem: Problem, share: float) -> Problem:
     `problem`: In its plane, on ground at rest.
     `share`: [g]
     """
-    PUSH.require("push", share)
     both = borne(problem)
-    worst = worse(both)
-    note = f"pushed by {share:g} g to the {worst}: {borne_words(both)}{without_mass(problem)}"
-    dead = (*problem.dead, push_on_all(problem, [WAYS[worst] * share, 0.0]))
-    return replace(problem, dead=dead, notes=(*problem.notes, note))
+    return _pushed(problem, worse(both), share, f": {borne_words(both)}")
 
 
 def curve(problem: Problem, way: str) -> Curve:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import Array, frozen
+from blocksim.blocks.assembly import Array, Blocks, frozen
 from blocksim.common.checks import COORDINATE, FACTOR, FORCE, require_all
 
 if TYPE_CHECKING:
@@ -54,6 +54,11 @@ def push_on_all(problem: Problem[Any], force: Sequence[float] | Array) -> Load:
     """Return a push on all blocks, x and y, in space also z, over the weight of each."""
     blocks = tuple(range(len(problem.assembly.blocks)))
     return Load(force=np.array(force, dtype=float), blocks=blocks, per_weight=True)
+
+
+def with_push(problem: Problem[Blocks], across: float) -> Problem[Blocks]:
+    """Return a problem pushed across besides, by a share of the weight of each block [g]."""
+    return replace(problem, dead=(*problem.dead, push_on_all(problem, [across, 0.0])))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

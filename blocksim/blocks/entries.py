@@ -10,6 +10,7 @@ from pydantic import Field
 from blocksim.blocks.polygons import MOST_BLOCKS
 from blocksim.blocks.shaking import MOST_ROWS
 from blocksim.blocks.shapes import MOST_CORNERS
+from blocksim.blocks.vehicles import AXLE, MOST_AXLES
 from blocksim.common.checks import (
     COORDINATE,
     ETA,
@@ -233,6 +234,20 @@ class Around(Said):
     move: Annotated[tuple[MoveEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     shake: ShakeEntry | None = None
     size: Length | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class VehicleFile(Written):
+    """A file of a vehicle.
+
+    `axles`: Place [m] and weight [kN] of each.
+    `title`: Said with each answer.
+    `source`: Where what is known of it comes from.
+    """
+
+    axles: Annotated[list[tuple[Coordinate, Annotated[float, AXLE]]], listed(1, MOST_AXLES)]
+    title: Note = ""
+    source: Note = ""
 
 
 UNIT_WEIGHT = 1.0

@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, cast
 
-from blocksim.common.checks import COORDINATE, require
+from blocksim.common.checks import COORDINATE, Range, require
 from blocksim.common.errors import InputError, perhaps
-from blocksim.common.files import read_file, shipped_files, toml_of
+from blocksim.common.files import read_toml, shipped_files
 
-LARGEST_FILE = 64 * 1024
-"""Bytes; a larger file is not read."""
 MOST_AXLES = 100
-HEAVIEST = 1e6
-"""Axle [kN]."""
+AXLE = Range(low=0, high=1e6, unit="kN", above=True)
+"""Weight of one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,8 +33,8 @@ class Vehicle:
         require(1 <= count <= MOST_AXLES, "axles", count, f"1 to {MOST_AXLES} axles")
         for place, weight in self.axles:
             COORDINATE.require("axles", place)
-            ok = 0 < weight <= 1e3 * HEAVIEST
-            require(ok, "axles", f"{weight / 1e3:g} kN", f"above 0, at most {HEAVIEST:g} kN")
+            heavy = weight / 1e3
+            require(AXLE.has(heavy), "axles", f"{heavy:g} kN", AXLE.words)
 
     @property
     def turned(self) -> Vehicle:
@@ -103,35 +100,11 @@ def _axle(text: str, said: str) -> tuple[float, float]:
 
 
 def _read(path: Path) -> Vehicle:
-    where = str(path)
-    text = read_file(where, "vehicle", "an existing .toml file", LARGEST_FILE)
-    try:
-        table: dict[str, Any] = toml_of(text)
-    except ValueError as error:
-        said = " ".join(str(error).split())
-        raise InputError("file", said, "valid TOML", where=where) from None
-    for key, value in table.items():
-        known = key in {"axles", "title", "source"}
-        if not known or (key != "axles" and not isinstance(value, str)):
-            raise InputError(key, value, "axles, title and source, text both", where=where)
-    axles: object = table.get("axles")
-    pairs = cast("list[list[float]]", axles)
-    if not isinstance(axles, list) or not all(map(_is_pair, pairs)):
-        raise InputError(
-            "axles", str(pairs), "a list of [place in m, weight in kN]", where=where
-        )
-    try:
-        return Vehicle(
-            axles=tuple((float(place), 1e3 * float(weight)) for place, weight in pairs),
-            title=table.get("title", ""),
-            source=table.get("source", ""),
-        )
-    except InputError as error:
-        raise InputError(error.field, error.value, error.allowed, where=where) from None
+    # Tables of files take a while to load, and most vehicles have a name.
+    from blocksim.blocks.entries import VehicleFile
+    from blocksim.common.tables import as_said
 
-
-def _is_pair(value: object) -> bool:
-    pair = cast("list[object]", value) if isinstance(value, list) else []
-    return len(pair) == 2 and all(
-        isinstance(each, int | float) and not isinstance(each, bool) for each in pair
-    )
+    table = read_toml(path, "vehicle", "an existing .toml file")
+    said = as_said(VehicleFile, table, str(path))
+    axles = tuple((place, 1e3 * weight) for place, weight in said.axles)
+    return Vehicle(axles=axles, title=said.title, source=said.source)

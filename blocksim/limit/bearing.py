@@ -27,16 +27,18 @@ LEAST = 1e-9
 
 
 class Bearing:
-    """What soil bears more at most, as columns of a programme.
+    """What soil bears more at most, as columns of a programme; there are none without soil.
 
     `cones`: Of the problem.
     `columns`, (equations, loads) sparse: What all that soil bears does to the blocks.
     """
 
-    def __init__(self, problem: Problem, cones: Cones) -> None:
-        self._loads, self._cones = soil_bearing(problem), cones
+    def __init__(self, problem: Problem) -> None:
+        self.cones = cones = Cones(problem)
+        self._loads = soil_bearing(problem)
         columns = [cones.loads(problem.assembly.of_load(load)) for load in self._loads]
-        self.columns: Any = sparse.csc_array(np.array(columns).reshape(len(columns), -1).T)
+        shape = len(columns), cones.balance.shape[0]
+        self.columns: Any = sparse.csc_array(np.reshape(columns, shape).T)
 
     def most(
         self,
@@ -50,7 +52,7 @@ class Bearing:
         Returns: As of `blocksim.limit.cones.most`.
         Returns `shares`, (loads,): Of what soil bears; empty where nothing balances.
         """
-        cones, count = self._cones, len(self._loads)
+        cones, count = self.cones, len(self._loads)
         columns = sparse.hstack([self.columns, column], format="csc")
         ends = np.append(np.zeros(count), bounds[0]), np.append(np.ones(count), bounds[1])
         found = most(cones, columns, right, ends, solver)
@@ -96,8 +98,8 @@ def settled(problem: Problem, live: Array | None = None) -> Problem:
     """
     if not bears(problem):
         return problem
-    cones = Cones(problem)
-    bearing = Bearing(problem, cones)
+    bearing = Bearing(problem)
+    cones = bearing.cones
     if live is None:
         column, pull = cones.balance @ cones.bounded[:, None], problem.applied_forces()
         bounds = (-1e3, 1.0)

@@ -17,8 +17,8 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.common.later import sparse, sparse_linalg
-from blocksim.limit.bearing import Bearing, bears
-from blocksim.limit.cones import ROUND_OFF, Cones, most
+from blocksim.limit.bearing import Bearing
+from blocksim.limit.cones import ROUND_OFF
 from blocksim.limit.crushing import Crushing, mobilised
 from blocksim.limit.linear import LinearProgramme, Optimum
 from blocksim.limit.programme import most_common, scaled
@@ -50,13 +50,13 @@ class Capacity:
     """
 
     def __init__(self, problem: Problem) -> None:
-        self.cones = Cones(problem)
+        self._bearing = Bearing(problem)
+        self.cones, strength = self._bearing.cones, problem.strength
         self._dead = problem.with_load(0.0).applied_forces()
         self._solver, self._shares = LinearProgramme(), LinearProgramme()
         self._shared = False
-        strength = problem.strength
-        self._bearing = Bearing(problem, self.cones) if bears(problem) else None
-        self._crushing = None if strength is None else Crushing(problem, self.cones, strength)
+        crushes = strength is not None
+        self._crushing = Crushing(problem, self._bearing, strength) if crushes else None
 
     def of(self, live: Array) -> Collapse:
         """Find the largest factor on live loads.
@@ -69,10 +69,8 @@ class Capacity:
         right = -cones.loads(self._dead)
         if self._crushing is not None:
             return self._collapse(self._crushing.most(column, right)[0])
-        if self._bearing is not None:
-            endless = (-math.inf, math.inf)
-            return self._collapse(self._bearing.most(column, right, endless, self._solver)[0])
-        return self._collapse(most(cones, column, right, (-math.inf, math.inf), self._solver))
+        endless = (-math.inf, math.inf)
+        return self._collapse(self._bearing.most(column, right, endless, self._solver)[0])
 
     def gauge(self, live: Array) -> float:
         """Return the inverse of the largest factor on live loads of a structure that stands.
@@ -82,7 +80,7 @@ class Capacity:
 
         `live`, (blocks, 3): As of `of`, not all 0.
         """
-        if self._bearing is not None or self._crushing is not None:
+        if self._bearing.columns.shape[1] or self._crushing is not None:
             factor = self.of(live).load_factor
             return math.inf if factor is None else 1 / factor
         cones = self.cones

@@ -62,22 +62,22 @@ class Crushing:
     """The programmes of joints that crush.
 
     `problem`: In its plane, with weights and sizes.
-    `cones`: Of the problem.
+    `bearing`: Of the problem.
     `strength`: Compressive strength [Pa], of any size.
     Raises `InputError`: If there are no weights or sizes to compare the strength with, or a
         corner bears a block: a point bears nothing then.
     """
 
-    def __init__(self, problem: Problem, cones: Cones, strength: float) -> None:
+    def __init__(self, problem: Problem, bearing: Bearing, strength: float) -> None:
         require_sizes(problem)
+        self._cones = cones = bearing.cones
+        self._soil = bearing.columns
         crushing = strength * joint_areas(problem) / problem.unit_force
         # Both ends of each joint.
-        self._cones, self._full = cones, np.repeat(crushing, 2)
+        self._full = np.repeat(crushing, 2)
         self._unit = np.repeat(cones.unit, 2)
         self._ends = ends = cones.pressing
         self._both = (ends[0::2] + ends[1::2])[np.repeat(np.arange(crushing.size), 2)]
-        bare = sparse.csc_array((cones.balance.shape[0], 0))
-        self._soil: Any = Bearing(problem, cones).columns if bears(problem) else bare
 
     def most(self, column: Any, right: Array) -> tuple[Optimum, Array]:
         """Make the factor on a column as large as balance, friction and strength allow.
@@ -200,9 +200,9 @@ def strength_needed(problem: Problem) -> Needed | None:
     Raises `Unsolved`: If the solver gives up.
     """
     problem = mobilised(problem)
-    cones = Cones(problem)
-    found = _least(problem, cones)
-    return None if found is None else _needed(cones, *found[:3])
+    bearing = Bearing(problem)
+    found = _least(problem, bearing)
+    return None if found is None else _needed(bearing.cones, *found[:3])
 
 
 def mobilised(problem: Problem, live: Array | None = None) -> Problem:
@@ -212,27 +212,26 @@ def mobilised(problem: Problem, live: Array | None = None) -> Problem:
     """
     if problem.strength is None or not bears(problem):
         return settled(problem, live)
-    cones = Cones(problem)
-    shares = np.zeros(0)
+    bearing, shares = Bearing(problem), np.zeros(0)
     if live is None:
-        found = _least(problem, cones)
+        found = _least(problem, bearing)
         shares = shares if found is None else found[3]
     else:
-        crushing = Crushing(problem, cones, problem.strength)
+        cones, crushing = bearing.cones, Crushing(problem, bearing, problem.strength)
         dead = cones.loads(problem.with_load(0.0).applied_forces())
         optimum, mobile = crushing.most(sparse.csc_array(cones.loads(live)[:, None]), -dead)
         shares = mobile if optimum.exists else shares
-    return Bearing(problem, cones).added(problem, shares)
+    return bearing.added(problem, shares)
 
 
-def _least(problem: Problem, cones: Cones) -> tuple[Crushing, Optimum, float, Array] | None:
+def _least(problem: Problem, bearing: Bearing) -> tuple[Crushing, Optimum, float, Array] | None:
     """Find the programme, its optimum and strength, and the shares of soil that need least."""
     require_sizes(problem)
-    pull = problem.applied_forces()
+    cones, pull = bearing.cones, problem.applied_forces()
     # Of which joints bear about what blocks weigh, so that its multiples are numbers near 1.
     unit = float(np.median(problem.unit_force * cones.unit / joint_areas(problem)))
     for _ in range(TRIES):
-        crushing = Crushing(problem, cones, unit)
+        crushing = Crushing(problem, bearing, unit)
         try:
             found, shares = crushing.least(-cones.loads(pull))
         except Unsolved:

@@ -15,6 +15,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
+from blocksim.limit.bearing import Bearing
 from blocksim.limit.cones import Cones
 from blocksim.limit.crushing import Crushing
 from blocksim.limit.linear import LinearProgramme
@@ -76,7 +77,8 @@ def thrust_range(problem: Problem, joint: int) -> tuple[Thrust, Thrust] | None:
 
     Returns `least`, `greatest`: None where there is no equilibrium.
     """
-    cones = Cones(problem)
+    bearing = Bearing(problem)
+    cones = bearing.cones
     across = np.zeros((len(problem.assembly.joints), 2, 2))
     arrays = problem.assembly.joint_arrays
     # On the block after it; a joint whose normal points to the left is pressed to the left.
@@ -86,7 +88,7 @@ def thrust_range(problem: Problem, joint: int) -> tuple[Thrust, Thrust] | None:
     cost, ends = cones.work(across), list[Thrust]()
     solver, mirror = LinearProgramme(), mirror_of(problem)
     strength = problem.strength
-    crushing = None if strength is None else Crushing(problem, cones, strength)
+    crushing = None if strength is None else Crushing(problem, bearing, strength)
     for sign in (1.0, -1.0):
         if crushing is None:
             found = extreme(cones, sign * cost, problem.applied_forces(), solver)

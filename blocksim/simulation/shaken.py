@@ -20,7 +20,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from blocksim.blocks.acting import push_on_all
+from blocksim.blocks.acting import with_push
 from blocksim.blocks.assembly import PLANAR, Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
@@ -151,8 +151,7 @@ def _is_known(problem: Problem) -> bool:
 
 def _pushed(problem: Problem, across: float) -> Problem:
     """Return a problem at a moment at which its ground accelerates by so much across [g]."""
-    push = push_on_all(problem, [-across, 0.0])
-    return replace(problem, shaking=None, dead=(*problem.dead, push))
+    return replace(with_push(problem, -across), shaking=None)
 
 
 def _begin(world: World, simulation: Simulation[Any]) -> None:

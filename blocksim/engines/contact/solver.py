@@ -212,10 +212,8 @@ class ContactProblem:
             yield path_from_guess(step, last, NEAREST_PIECES)
         if not tried.is_enough:
             yield path_from_guess(step, first)
-        if steep:
-            if not tried.is_enough:
-                yield path_from_apart(step, last.forces)
-            yield path_from_apart(step)
+        if steep and not tried.is_enough:
+            yield path_from_apart(step, last.forces)
         yield from _at_last(step, tried)
 
 
