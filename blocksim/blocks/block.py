@@ -207,8 +207,3 @@ class Joint:
             across=None if self.across is None else -self.across,
             faces=None if self.faces is None else self.faces[:, ::-1],
         )
-
-    @property
-    def bears(self) -> int:
-        """The block that stands on it, where it is one with the support."""
-        return self.before if self.after == SUPPORT else self.after

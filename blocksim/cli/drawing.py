@@ -11,7 +11,6 @@ from blocksim.ask.answer import Check
 from blocksim.ask.check import check
 from blocksim.cli.acting import Loading
 from blocksim.cli.built import Given
-from blocksim.cli.filming import picture_of_leaning
 from blocksim.cli.options import named_options, refuse
 from blocksim.cli.output import progress, save_picture, say
 from blocksim.cli.question import arch_of, is_thick
@@ -34,19 +33,17 @@ def write_still(
 ) -> None:
     """Draw what stands still: a sheet of what is built, or the arch at its least thickness.
 
-    Where gravity leans out of the plane of an arch, statics in the plane say nothing: it is
-    put into the engine that sees it, and drawn in perspective.
+    An arch whose gravity leans out of its plane is drawn in space, where it is asked about.
     """
-    leaning = given.lean is not None
-    bare = scene is None and not (loading.given or leaning or is_thick(given))
-    problem = None if bare else anything_asked(scene, given, loading, thick=not leaning)
-    leaning = problem is not None and not (problem.in_space or problem.is_planar)
     solid = "another kind: a page to turn around (.html) is of blocks in space"
-    if problem is not None and not leaning:
-        if problem.in_space:
+    if scene is not None or loading.given or given.lean is not None or is_thick(given):
+        problem = anything_asked(scene, given, loading, thick=given.lean is None)
+        if problem.in_space or not problem.is_planar:
             refuse({"must_rest": must_rest})
             perspective = "a .png, .svg or .pdf: it is drawn in perspective; or .html, to turn "
             require(kind != "dxf", "--out", str(out), f"{perspective}it around")
+            seen = problem.in_space or method in {None, "auto", "limit"}
+            require(seen, "--method", method, "limit, or left out: it leans out of its plane")
         else:
             require(kind != "html", "--out", str(out), solid)
             as_built = "limit or an engine: it is drawn as built"
@@ -59,11 +56,8 @@ def write_still(
     require(kind != "html", "--out", str(out), solid)
     require(method is None, "--method", method, "left out: the picture is of no motion")
     require(not must_rest, "--must-rest", must_rest, "left out: nothing is built in its plane")
-    why = ": it leans" if leaning else " where no thickness is given"
-    require(kind != "dxf", "--out", str(out), f"a .png, .svg or .pdf{why}")
-    if problem is not None:
-        picture_of_leaning(out, kind, problem, height)
-        return
+    thin = "a .png, .svg or .pdf where no thickness is given"
+    require(kind != "dxf", "--out", str(out), thin)
     from blocksim.view.archfigure import arch_figure, picture_of_theory
 
     with named_options():

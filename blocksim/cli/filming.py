@@ -12,7 +12,6 @@ from blocksim.ask.check import check
 from blocksim.ask.methods import choose
 from blocksim.ask.rest import let_go, rest_words
 from blocksim.ask.simulate import simulate
-from blocksim.blocks.acting import tilt_and_lean
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.cli.acting import Loading
 from blocksim.cli.arguments import option
@@ -30,7 +29,7 @@ from blocksim.kinds.loading import load_recording
 from blocksim.report.poses import write_recording_csv, write_recording_json
 from blocksim.report.recordings import unsolved_words
 from blocksim.simulation.motion import EARLY
-from blocksim.simulation.observation import conclude, hold
+from blocksim.simulation.observation import hold
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
 
@@ -38,11 +37,6 @@ FALL = 20.0
 """Time recorded of a structure at most: it ends when the rubble lies still [sqrt(r/g)]."""
 HEIGHT = 720
 HEIGHTS = (180, 2160)
-STILL = 1e-3
-"""Time recorded of an arch of which only a picture is wanted [sqrt(r/g)]."""
-SHOWN = 0.2
-"""Largest motion in the picture of an arch that overturns [r]."""
-
 MOST_NUMBERS = 5_000_000
 """Of the poses of a recording that is written as a model or a table."""
 ROUGH = 1e-4
@@ -138,7 +132,6 @@ def film(out: Path, shown: Sequence[Recording[Any]], at: float | None, **options
         later = f": {asked:g} is after the end, so it shows the end, {end}"
         say(f"wrote {out}{later if end else ''}")
         return
-    why = ", until a block reaches the ground or a footing" if made.on_ground else ""
     radius = "" if made.metric else " (if r = 1 m)"
     length = made.count / made.rate
     pace = f"{made.slow:g} times slower" if made.slow != 1 else "in real time"
@@ -146,7 +139,7 @@ def film(out: Path, shown: Sequence[Recording[Any]], at: float | None, **options
     ends = f"{rest} of stills; blocks still move as it ends, at {made.speed:.3g} m/s"
     shows = (
         f"{made.seconds:.3g} s of motion{radius}, {pace}, and "
-        f"{ends if made.speed else f'{rest} at rest'}{why}"
+        f"{ends if made.speed else f'{rest} at rest'}"
     )
     said = shows if any(made.moves) else "nothing is seen to move"
     say(f"wrote {out}: a film of {length:.1f} s: {said}")
@@ -190,23 +183,3 @@ def _motionless(recording: Recording) -> str:
             f"moved {moved:.2g} r; simulate --seconds 2 records how it falls"
         )
     return f"nothing is seen to move in one recording ({arch}): it is at rest"
-
-
-def picture_of_leaning(out: Path, kind: str, problem: Problem, height: int | None) -> None:
-    """Draw an arch in gravity that leans out of its plane, in perspective, with its verdict.
-
-    The motion is that by which a check decides, drawn larger.
-    """
-    from blocksim.view.film import Film
-
-    with named_options(), progress() as report:
-        held = hold(problem, choose("auto", problem=problem).name, progress=report)
-        seen = conclude(held, moving=True, progress=report)
-    run = seen.motion.recording if seen.motion else held.release(STILL).recording
-    falls = seen.verdict is Verdict.COLLAPSES
-    enlarge = SHOWN / float(run.displacement.max()) if falls else 1.0
-    tall = height or HEIGHT
-    made = Film([run], verdict=seen.verdict, enlarge=enlarge, view="3d", height=tall)
-    write_whole(out, lambda file: made.still(file, kind))
-    _, lean = tilt_and_lean(problem)
-    say(f"wrote {out}: {seen.verdict}, gravity leans {lean:.4g} deg out of the plane")

@@ -119,10 +119,8 @@ def legend_of(
     return shapes, labels
 
 
-def verdict_words(recording: Recording, verdict: Verdict | None = None) -> str:
-    """Say whether it falls: as a check does, or by how far it has moved."""
-    if verdict is not None:
-        return verdict.value
+def verdict_words(recording: Recording) -> str:
+    """Say whether it falls, by how far it has moved."""
     if recording.problem.shaking is not None:
         return outcome(recording)[0].value
     moved = float(recording.displacement.max())

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 from typing import Any, BinaryIO, Literal
 
@@ -16,7 +15,6 @@ from blocksim.arch.circular import GRAVITY
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.simulation.recording import Recording
-from blocksim.simulation.verdict import Verdict
 from blocksim.view.acting import Acting
 from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
 from blocksim.view.captions import (
@@ -51,8 +49,6 @@ class Film:
     """Frames drawn from recordings alone: equal recordings give equal frames.
 
     `recordings`: One, or two to show side by side on one clock.
-    `verdict`: What a check says of all of them; by default what the motion tells is said.
-    `enlarge`: How many times larger than it was the motion is drawn.
     `view`, {"2d", "3d"}: Of blocks of the plane; those in space are seen in perspective.
     `slow`: How many times slower than it happened; by default such that the motion takes about
         six seconds.
@@ -64,7 +60,6 @@ class Film:
     It has:
     `width`, `height`: Both even, as video asks for.
     `seconds`: How long the motion is that is shown.
-    `on_ground`: Whether it ends because a block has reached the ground or a footing.
     `count`: Number of frames.
     `metric`: Whether lengths and times are shown in metres and seconds: unless all are arches
         with a radius of 1, which stands for none given. Then they are in r and sqrt(r/g).
@@ -76,8 +71,6 @@ class Film:
         self,
         recordings: Sequence[Recording],
         *,
-        verdict: Verdict | None = None,
-        enlarge: float = 1.0,
         view: ViewName = "2d",
         slow: float | None = None,
         height: int = TALL,
@@ -87,19 +80,16 @@ class Film:
         self.height = 2 * (height // 2)
         self.width = 2 * round(height * 8 / 9)
         self.rate = rate
-        self._words = [verdict_words(recording, verdict) for recording in recordings]
-        self._enlarge = enlarge
-        self._is_mode = verdict is not None
+        self._words = [verdict_words(recording) for recording in recordings]
         # Blocks in space are seen in perspective, however it is asked.
         self._flat = view == "2d" and not any(each.problem.in_space for each in recordings)
         # Side by side there is less room beside the blocks; the camera draws back for them.
         near = 1.0 if len(recordings) == 1 else NEAR
-        self._stages = [stage_of(_enlarged(each, enlarge), near) for each in recordings]
+        self._stages = [stage_of(each, near) for each in recordings]
         # An arch of which no radius was given is shown in units of it.
         self.metric = any(recording.problem.has_size for recording in recordings)
         self.moves = [stage.moves for stage in self._stages]
         self.speed = max(stage.speed for stage in self._stages)
-        self.on_ground = any(stage.sinks < np.inf for stage in self._stages)
         self._size = self.height / TALL
         self._panels = self._arrange()
         kind: Any = PlanarView if self._flat else SpatialView
@@ -247,7 +237,7 @@ class Film:
                 around = [*view.still, *bar]
                 labels += words
             parts.append((panel, [*around, *pull]))
-            moving = bool(stage.speed) and not self._is_mode
+            moving = bool(stage.speed)
             labels += [*name, *title(stage, panel, verdict, self.height, size, moving=moving)]
         whole = Panel(0, 0, self.width, self.height)
         lines = [
@@ -272,8 +262,6 @@ class Film:
         words = "real time" if self.slow == 1 else f"{self.slow:g} times slower"
         if not self.metric:
             words += " if r = 1 m"
-        if self._enlarge != 1:
-            words = f"motion drawn {self._enlarge:.2g} times larger"
         x = 48 * self._size + width_of(self._clock(self.seconds), 19 * self._size, bold=True)
         return Label(x, 15 * self._size, words, size=14 * self._size, colour=QUIET)
 
@@ -291,13 +279,6 @@ class Film:
 def stage_of(recording: Recording[Any], near: float = 1.0) -> Stage | SolidStage:
     """Make a recording ready for the eye, in the plane or in space."""
     return (SolidStage if recording.problem.in_space else Stage)(recording, near)
-
-
-def _enlarged(recording: Recording, times: float) -> Recording:
-    if times == 1:
-        return recording
-    rest = recording.poses[0]
-    return replace(recording, poses=rest + times * (recording.poses - rest))
 
 
 def _seen(stage: Stage | SolidStage, view: View, seconds: float) -> Array:

@@ -95,14 +95,3 @@ class Placing:
         local = np.zeros((*sides.shape, 2, 3))
         local[..., :2] = assembly.joint_arms.swapaxes(0, 1)
         return centres[sides][:, :, None] + local @ turns[sides].swapaxes(2, 3)
-
-
-def depth_of(points: Array, outline: Array) -> Array:
-    """How far points (..., 2) are inside convex outlines (..., sides, 2), below 0 outside."""
-    along = np.roll(outline, -1, axis=-2) - outline
-    length = np.linalg.norm(along, axis=-1)
-    inward = np.stack([-along[..., 1], along[..., 0]], axis=-1)
-    height = ((points[..., None, :] - outline) * inward).sum(axis=-1)
-    # A corner given twice makes a side without length, which bounds nothing.
-    bounds = length > 0
-    return np.where(bounds, height / np.where(bounds, length, 1.0), np.inf).min(axis=-1)

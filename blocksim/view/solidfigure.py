@@ -11,7 +11,7 @@ from blocksim.common.version import __version__
 from blocksim.engines.base import Quality, Settings
 from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import Canvas, Label, Panel, Shape, colour
-from blocksim.view.captions import legend_of, title
+from blocksim.view.captions import gravity_arrow, legend_of, title
 from blocksim.view.placing import UPRIGHT
 from blocksim.view.solidscene import WAY, force_lines, told
 from blocksim.view.solidstage import SolidStage
@@ -48,7 +48,8 @@ def solid_figure(answer: Check[SpatialAssembly]) -> Figure:
     said += ["forces at joints: length and width in proportion"] if forces else []
     foot = Label(24, 15, ", ".join(said), 13.0, QUIET)
     marks, words = legend_of(legend, WIDE, 1.0)
-    canvas.keep([(panel, view.still)], [*head, foot, *words])
+    pull, name = gravity_arrow(stage, view, panel, 1.0)
+    canvas.keep([(panel, [*view.still, *pull])], [*head, *name, foot, *words])
     whole = Panel(0, 0, WIDE, TALL)
     canvas.draw([(panel, [*shapes, *forces]), (whole, marks)])
     return canvas.figure()

@@ -34,7 +34,6 @@ class SolidStage(Timeline):
     eye = math.radians(30.0), math.radians(22.0)
     """Where it is seen from, turned about the vertical and raised: tops have much to show."""
     is_arch = False
-    sinks = np.inf
     thrust: tuple[Array, ...] = ()
     carried: Carried | None = None
 

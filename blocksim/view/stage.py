@@ -2,8 +2,8 @@
 
 Lengths are in units of the assembly's size, which is an arch's radius r, times in units of
 sqrt(size/g). Blocks are shown on their supports where these are known, else on the piers of
-`blocksim.engines.ground`, and above its floor. A film ends with the recording, when the last
-block has left the picture, or when one sinks into what it does not rest on (old recordings).
+`blocksim.engines.ground`, and above its floor. A film ends with the recording, or when the last
+block has left the picture.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from blocksim.ask.answer import SOUGHT
-from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.space.extruded import prism, prisms
 from blocksim.engines.ground import ground_level, piers
@@ -22,13 +22,13 @@ from blocksim.kinds.offers import carried_of
 from blocksim.limit.carried import Carried
 from blocksim.simulation.recording import Recording
 from blocksim.view.drawing import clipped, grain_of, rims
-from blocksim.view.placing import Placing, depth_of
+from blocksim.view.placing import Placing
 from blocksim.view.solidscene import Solids
 from blocksim.view.thrustlines import is_chained, near_blocks, thrust_lines
 from blocksim.view.timeline import Moment, SeenJoints, Timeline
 
-SUNK = 0.02
-"""Depth of a corner in the ground or in a footing that passes for touching it [r]."""
+TOUCHING = 0.02
+"""Height of a corner over the ground below which its block lies on it [r]."""
 FARTHEST = 1.75
 """Blocks are followed up to this far beyond where they were at rest [r]."""
 ALONG = 2.25
@@ -70,7 +70,7 @@ class Stage(Timeline):
         if self.recording.problem.moves and not self.assembly.springings:
             tops = [part[:, 1].max() for each in self._fixed for part in each.polygons]
             self.ground, self._fixed = float(max(tops)) / size, ()
-        self.footings, self._bearing = self._standing()
+        self.footings = self._standing()
         self._placing = Placing(recording)
         self.owner = self._placing.owner
         self.grain = grain_of(self.assembly) / size
@@ -81,12 +81,11 @@ class Stage(Timeline):
         feet = [prism(each * size, WIDER * self.depth * size) for each in self.footings]
         return Solids(prisms(self.assembly), feet, line, size, is_arch=self.is_arch)
 
-    def _standing(self) -> tuple[tuple[Array, ...], list[int]]:
-        """Footings, and for each the block that has nothing to reach in it, or `SUPPORT`."""
+    def _standing(self) -> tuple[Array, ...]:
+        """Return the outlines of what blocks stand on, cut off far from them."""
         assembly, size = self.assembly, self.assembly.size
         if not assembly.supports:
-            bears = [joint.bears for joint in assembly.springings]
-            return tuple(pier / size for pier in piers(assembly)), bears
+            return tuple(pier / size for pier in piers(assembly))
         # Of a wide or a high support, or one deep in the ground, a part is enough.
         poses, reach = self.recording.poses, assembly.reach / size
         gone = (poses[..., 0] - reach).min(), (poses[..., 0] + reach).max()
@@ -98,44 +97,17 @@ class Stage(Timeline):
             for support in self._fixed
             for part in support.polygons
         ]
-        kept = tuple(part for part in parts if len(part))
-        return kept, [SUPPORT] * len(kept)
+        return tuple(part for part in parts if len(part))
 
     @cached_property
     def end(self) -> float:
-        """Time at which a block sinks, the last has left the picture, or the recording ends."""
+        """Time at which the last block has left the picture, or the recording ends."""
         # A block that slides on and on leaves a picture in which nothing is to be seen.
         along = self.recording.poses[..., 0]
         reach = FOLLOWED * (self._high[0] - self._low[0] + 2 * self._aside / self._near)
         near = (along > self._low[0] - reach) & (along < self._high[0] + reach)
         last = np.flatnonzero(near.any(axis=1))[-1]
-        return min(self.sinks, float(self.recording.times[last]))
-
-    @cached_property
-    def sinks(self) -> float:
-        """Time at which a block sinks into ground or footing, or inf."""
-        times = self.recording.times
-        depths: list[float] = []
-        for frame in range(len(times) if self.moves else 0):
-            depths.append(self._sunk(self._placing.corners(frame, frame, 0.0)[..., :2]))
-            # Where footings are so near that they meet blocks at rest, that is no end.
-            touch = SUNK + max(0.0, depths[0])
-            if depths[-1] > touch:
-                between = times[frame - 1 : frame + 1]
-                return float(np.interp(touch, depths[-2:], between))
-        return np.inf
-
-    def _sunk(self, corners: Array) -> float:
-        """Deepest that a block is in the ground, or meets a footing of another block."""
-        outlines = corners[:, 0]
-        deepest = self.ground - float(outlines[..., 1].min())
-        for block, footing in zip(self._bearing, self.footings, strict=True):
-            others = outlines[self.owner != block]
-            if not len(others):
-                continue
-            for points, around in ((others, footing), (footing, others[:, None])):
-                deepest = max(deepest, float(depth_of(points, around).max()))
-        return deepest
+        return float(self.recording.times[last])
 
     @cached_property
     def carried(self) -> Carried | None:
@@ -213,4 +185,4 @@ class Stage(Timeline):
     @cached_property
     def _seen(self) -> SeenJoints:
         frames = self.shown if self.moves else []
-        return SeenJoints(self.recording, self._placing, frames, self.ground + SUNK)
+        return SeenJoints(self.recording, self._placing, frames, self.ground + TOUCHING)
