@@ -168,23 +168,6 @@ def test_points_of_another_program_are_drawn_beside(tmp_path: Path) -> None:
     assert "elsewhere" in (tmp_path / "chart.json").read_text()
 
 
-def test_files_of_before_there_were_knobs_are_read(tmp_path: Path) -> None:
-    path = tmp_path / "points.json"
-    record = {
-        "case": "an arch",
-        "method": "elsewhere",
-        "tol": 1e-3,
-        "error": "inf",
-        "undecided": 2,
-        "work": 7.0,
-        "seconds": [2.0, 3.0],
-    }
-    path.write_text(json.dumps({"points": [record]}))
-    (old,) = read_points(path)
-    assert (old.knob, old.value, old.error) == ("tolerance", 1e-3, math.inf)
-    assert old.processor_s == old.wall_s == (2.0, 3.0)
-
-
 @pytest.mark.parametrize(
     "text",
     [
@@ -193,7 +176,6 @@ def test_files_of_before_there_were_knobs_are_read(tmp_path: Path) -> None:
         '{"points": [{"case": "an arch"}]}',
         '{"points": 1}',
         '{"points": [{"knob": "luck"}]}',
-        '{"points": [{"tol": 1, "seconds": []}]}',
     ],
 )
 def test_what_holds_no_points_is_refused(text: str, tmp_path: Path) -> None:

@@ -59,8 +59,7 @@ def _document(points: Sequence[Point]) -> bytes:
 def read_points(path: AnyPath) -> list[Point]:
     """Read points of another run or program, written as in chart.json.
 
-    Files of before there were knobs are read, too: a tolerance `tol`, and `seconds` by the
-    clock, which are taken for the processor's. The ends of brackets need not be told.
+    The ends of brackets need not be told.
     """
     text = read_file(path, "points", WRITTEN, LARGEST_FILE)
     try:
@@ -71,10 +70,6 @@ def read_points(path: AnyPath) -> list[Point]:
 
 def _point(record: dict[str, Any]) -> Point:
     """Return a record as a point; `KeyError`, `TypeError` or `InputError` if it is none."""
-    if "tol" in record:
-        seconds = record["seconds"]
-        now = {"knob": "tolerance", "value": record["tol"]}
-        record = {**record, **now, "processor_s": seconds, "wall_s": seconds}
     found = as_said(Point, record)
     if found.knob not in REFINEMENTS or not found.processor_s:
         raise KeyError(found.knob)
