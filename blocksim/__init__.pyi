@@ -70,6 +70,7 @@ from blocksim.kinds.tower import Tower as Tower
 from blocksim.kinds.wall import Wall as Wall
 from blocksim.limit import collapse as collapse
 from blocksim.limit import equilibrium as equilibrium
+from blocksim.reading.asked import Reading as Reading
 from blocksim.simulation.recording import Recording as Recording
 from blocksim.simulation.verdict import Evidence as Evidence
 from blocksim.simulation.verdict import Verdict as Verdict

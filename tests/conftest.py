@@ -12,11 +12,11 @@ from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
+from running import ENGINES
 from sweeps import SIMULATED, Rows, design_of, rows_of
 from windows import PATIENCE, Windows
 
 from blocksim import MissingPart, sweep
-from blocksim.engines import NAMES
 from blocksim.sweeps import run
 
 # Compiled once, not in every run and by every process that tests start.
@@ -53,7 +53,7 @@ def pytest_pyfunc_call() -> Generator[None, object, object]:
     try:
         return (yield)
     except MissingPart as missing:
-        if missing.part in NAMES:
+        if missing.part in ENGINES:
             pytest.skip(str(missing))
         raise
 

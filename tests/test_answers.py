@@ -14,8 +14,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from running import inside
 
-from blocksim import Arch, CircularArch, JointState, Mode, Verdict, check
-from blocksim.ask.methods import choose, chosen_words
+from blocksim import Arch, CircularArch, JointState, Mode, Verdict, bracket, check, simulate
 
 DOCS = Path(__file__).parent.parent / "docs"
 PLACE = DOCS / "schema" / "answers.json"
@@ -162,25 +161,15 @@ def test_joints_of_the_limit_mechanism() -> None:
     assert seen.arch.mode is Mode.RRR
 
 
-LEANING = (
-    CircularArch.of(Arch(half_angle=1.0, eta=0.2, voussoirs=9), 0.7).problem().leaning(0.1)
-)
-
-
-@pytest.mark.parametrize(
-    ("asked", "taken", "why"),
-    [
-        ({}, "limit", "no cheaper method sees the blocks as built and is exact"),
-        ({"tol": 1e-9}, "limit", "is exact"),
-        ({"moving": True}, "direct", "can move blocks and brackets down to 1e-08"),
-        ({"moving": True, "tol": 1e-2}, "direct", "can move blocks"),
-        ({"problem": LEANING}, "pybullet", "out of the plane"),
-    ],
-)
-def test_auto_takes_the_cheapest_that_can_answer(
-    asked: dict[str, float], taken: str, why: str
-) -> None:
-    rung = choose("auto", **asked)
-    assert rung.name == taken
-    assert why in chosen_words("auto", rung)
-    assert chosen_words(taken, rung) == ""
+def test_auto_takes_the_cheapest_that_can_answer() -> None:
+    """Nothing is simulated to be told; a motion is, in space where it leaves its plane."""
+    arch = CircularArch(half_angle=1.0, eta=0.2, voussoirs=9, friction=0.7)
+    why = "no cheaper method sees the blocks as built and is exact"
+    for found in (check(arch), bracket(arch, tol=1e-9)):
+        assert found.method == "limit"
+        assert why in found.reason
+    assert why not in check(arch, method="limit").reason
+    assert simulate(arch, duration=0.01).engine == "direct"
+    leaning = arch.problem().leaning(0.1)
+    assert check(leaning).method == "limit"
+    assert simulate(leaning, duration=0.01).engine == "pybullet"

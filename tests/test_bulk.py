@@ -41,8 +41,6 @@ from blocksim.limit.determinate import margin_of_tower, statics_of_stack
 from blocksim.limit.exact import Exact
 from blocksim.limit.proof import proof_of_parting, proof_record
 from blocksim.limit.space import can_rest
-from blocksim.suite.export import questions
-from blocksim.suite.families import Question
 from blocksim.verify import verify
 
 FLOOR: dict[str, Any] = {
@@ -232,19 +230,6 @@ def test_a_stream_and_a_folder_are_answered_by_line_and_by_file(tmp_path: Path) 
     for option in (["--tilt", "3"], ["--method", "direct"], ["--must-rest"], ["--eta", "0.2"]):
         done = CliRunner().invoke(app, ["check", "-", *option], input=json.dumps(fine))
         assert isinstance(done.exception, blocksim.InputError)
-
-
-def test_scenes_of_the_suite_are_structures(tmp_path: Path) -> None:
-    names = [f"{name}-{at:02}" for name in ("incline", "semicircle") for at in (1, 2, 3)]
-    for name in names:
-        scene = questions()[name].scene
-        (tmp_path / f"{name}.json").write_text(json.dumps(scene.record()))
-    told = check_many((tmp_path / f"{name}.json" for name in names), workers=1)
-    for name, each in zip(names, told, strict=True):
-        asked = questions()[name]
-        assert isinstance(asked, Question)
-        assert (each.verdict == "stands") == asked.stands
-        assert each.title == name
 
 
 WIDE, TALL, WEIGHT, ROUGH = 1.0, 3.0, 60_000.0, 0.5

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import itertools
 import json
 import math
 from pathlib import Path
@@ -14,9 +13,6 @@ import pytest
 from own_bridge import Bridge
 from running import inside
 from scipy.integrate import quad
-
-from blocksim.blocks.dispersal import Dispersal
-from blocksim.blocks.patch import Profile
 
 EIGHT = Bridge(span=8.0, rise=3.0, thick=0.45, count=31, fill=0.5)
 """Eight metres clear under half a metre of fill."""
@@ -144,29 +140,6 @@ def test_fill_spreads_a_wheel(dispersal: str) -> None:
     places = np.concatenate([np.linspace(-2.5, 2.5, 8), x + np.linspace(-0.01, 0.01, 3)])
     assert min(map(factor, places)) >= found["low"] * (1 - 1e-8)
     assert found["high"] > asked(bridge, "10@0")["high"]
-
-
-def test_boussinesq_on_level_ground_is_his_pressure() -> None:
-    """Below a line load on a level top, 2 Q / (pi z) cos^4, cut off and made whole again."""
-    edges = [-5.0, -0.4, 0.1, 0.7, 5.0]
-    blocks = [
-        [np.array([[a, -1.0], [b, -1.0], [b, 0.0], [a, 0.0]])]
-        for a, b in itertools.pairwise(edges)
-    ]
-    depth, most = 1.3, math.tan(math.pi / 6)
-    body, share, point = Profile.of(blocks).under(0.0, Dispersal.of("boussinesq", road=depth))
-
-    def pressure(x: float) -> float:
-        return 2 / (math.pi * depth) * (depth / math.hypot(x, depth)) ** 4
-
-    whole = quad(pressure, -most * depth, most * depth)[0]
-    for each, part, place in zip(body, share, point, strict=True):
-        low, high = np.clip(edges[each : each + 2], -most * depth, most * depth)
-        assert part == pytest.approx(quad(pressure, low, high)[0] / whole, rel=1e-10)
-        turn = quad(lambda x: x * pressure(x), low, high)[0] / whole
-        assert part * place[0] == pytest.approx(turn, abs=1e-10)
-        assert place[1] == pytest.approx(0.0, abs=1e-12)
-    assert share.sum() == pytest.approx(1.0, rel=1e-12)
 
 
 KINDS = [

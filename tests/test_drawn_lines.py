@@ -17,8 +17,7 @@ from hypothesis import strategies as st
 from own_bridge import thrusts_of_half
 from running import inside
 
-from blocksim import InputError, bracket, load_structure
-from blocksim.reading.asked import Reading
+from blocksim import InputError, Reading, bracket, load_structure
 from blocksim.reading.curves import arc, bezier, ellipse
 from blocksim.reading.loops import loops_of
 

@@ -22,33 +22,12 @@ from blocksim import (
     Verdict,
     bracket,
     check,
-    equilibrium,
     structure_of,
 )
 
 
 def exact(problem: Problem, over: str) -> float | None:
     return bracket(problem, over=over, method="limit").limit
-
-
-@pytest.mark.parametrize(
-    ("half", "mu", "voussoirs"),
-    [
-        (90.0, math.inf, 13),
-        (90.0, 0.35, 16),
-        pytest.param(60.0, 0.9, 10, marks=pytest.mark.long),
-        pytest.param(125.0, 0.9, 12, marks=pytest.mark.long),
-        (145.0, 1.6, 13),
-    ],
-)
-def test_least_thickness_of_rings_is_exact(half: float, mu: float, voussoirs: int) -> None:
-    """The arch's own statics, beside the linear programme, of which they know nothing."""
-    friction = "inf" if math.isinf(mu) else mu
-    table = {"kind": "circular-arch", "friction": friction, "voussoirs": voussoirs}
-    ring = structure_of({**table, "left_deg": half, "right_deg": half, "thickness": 0.3})
-    least = exact(ring, "thickness")
-    for share, rests in ((1 - 1e-9, False), (1 + 1e-9, True)):
-        assert equilibrium(ring.but(thickness=share * least)).exists is rests
 
 
 def test_vertical_joints_and_the_catenary() -> None:
@@ -154,19 +133,6 @@ def test_what_slips_may_come_to_rest_again() -> None:
     assert "gave way and came to rest again" in seen.reason
     thicker = arch.but(thickness=1.001 * least)
     assert check(thicker, method="direct").verdict is Verdict.STANDS
-
-
-def test_a_kind_on_the_command_line(tmp_path: Path) -> None:
-    path = tmp_path / "arch.toml"
-    path.write_text('kind = "pointed-arch"\nfriction = "inf"\nvoussoirs = 60\nradius = 1.25\n')
-    done = blocksim("bracket", str(path), "--json")
-    assert done.returncode == 0
-    found = json.loads(done.stdout)
-    want = case("pointed_e0_25")["expected"]["value"]
-    assert (found["over"], found["unit"], found["stands"]) == ("thickness", "m", "high")
-    assert found["limit"] == pytest.approx(want, rel=1e-7)
-    assert found["low"] < found["limit"] < found["high"]
-    assert found["confirmed"]
 
 
 def test_a_kind_by_its_name() -> None:

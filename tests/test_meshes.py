@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,15 +13,10 @@ from drawn import written
 from running import inside
 
 import blocksim
-from blocksim import InputError
-from blocksim.kinds.files import load_structure, structure_of
-from blocksim.reading.asked import Reading
-from blocksim.reading.compas import read_compas
-from blocksim.reading.meshes import read_mesh
+from blocksim import InputError, Problem, Reading, load_structure
 
 trimesh = pytest.importorskip("trimesh")
 UPRIGHT = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1.0]])
-METRES = Reading(unit="m")
 
 
 def dome() -> Any:
@@ -55,19 +51,24 @@ def file_of(folder: Path, kind: str, scale: float = 1.0) -> Path:
 @pytest.mark.parametrize("kind", ["obj", "stl", "ply", "glb"])
 def test_a_dome_is_the_same_as_a_mesh(tmp_path: Path, kind: str) -> None:
     """Weights, joints and margin are those of the kind, to the digits of the file."""
-    table = read_mesh(
-        file_of(tmp_path, kind, 1000.0 if kind == "stl" else 1.0),
-        Reading(unit="mm") if kind == "stl" else METRES,
-    )
-    if kind in {"stl", "ply"}:
-        assert not any(each["fixed"] for each in table["blocks"])
-        table["blocks"][-1]["fixed"] = True
-    found, known = structure_of(table | {"friction": 0.7}), dome()
+    path = file_of(tmp_path, kind, 1000.0 if kind == "stl" else 1.0)
+    # Where blocks have no names the last is the ground.
+    fixed = str(len(dome().assembly.blocks) + 1) if kind in {"stl", "ply"} else None
+    found, known = converted(path, "mm" if kind == "stl" else "m", fixed), dome()
     assert len(found.assembly.joints) == len(known.assembly.joints)
     weights = [np.sort(each.assembly.weights) for each in (found, known)]
     assert weights[0] == pytest.approx(weights[1], rel=1e-3)
     margins = [blocksim.equilibrium(each).margin for each in (found, known)]
     assert margins[0] == pytest.approx(margins[1], abs=1e-3)
+
+
+def converted(path: Path, unit: str, fixed: str | None = None) -> Problem[Any]:
+    """Read a mesh by command."""
+    out = path.with_suffix(".json")
+    held = () if fixed is None else ("--fixed", fixed)
+    done = inside("convert", str(path), "--mu", "0.7", "--unit", unit, *held, "--out", str(out))
+    assert done.returncode == 0, done.stderr
+    return load_structure(out)
 
 
 def box(*, faces: slice = slice(None), **changes: Any) -> Any:
@@ -82,10 +83,10 @@ def test_boxes_that_touch_are_told_apart_and_turned_ones_taken(tmp_path: Path) -
     table.invert()
     content = table.export(file_type="stl")
     path = written(tmp_path / "two.stl", content)
-    found = read_mesh(path, Reading(unit="ft"))
-    assert [each["id"] for each in found["blocks"]] == ["1", "2"]
-    corners = np.array(found["blocks"][1]["vertices"])
-    assert np.ptp(corners, axis=0) == pytest.approx([0.3048] * 3, rel=1e-6)
+    found = converted(path, "ft", "1").assembly
+    assert [each.name for each in (*found.supports, *found.blocks)] == ["1", "2"]
+    (hull,) = found.blocks[0].hulls
+    assert np.ptp(hull.corners, axis=0) == pytest.approx([0.3048] * 3, rel=1e-6)
 
 
 def flat() -> Any:
@@ -140,9 +141,9 @@ def test_a_mesh_has_no_unit_of_its_own(tmp_path: Path, monkeypatch: pytest.Monke
     path = file_of(tmp_path, "obj")
     with pytest.raises(InputError, match="--unit is missing"):
         load_structure(path, friction=0.7)
-    monkeypatch.setattr("blocksim.common.later.find_spec", lambda _: None)
+    monkeypatch.setitem(sys.modules, "trimesh", None)
     with pytest.raises(blocksim.MissingPart, match=r"pip install 'blocksim\[mesh\]'"):
-        load_structure(path, friction=0.7, reading=METRES)
+        load_structure(path, friction=0.7, reading=Reading(unit="m"))
 
 
 def compas_dome(*, dem: bool) -> dict[str, Any]:
@@ -175,9 +176,9 @@ def compas_dome(*, dem: bool) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("dem", [False, True])
-def test_an_assembly_of_compas_in_space_is_its_blocks(dem: bool) -> None:
-    table = compas_dome(dem=dem)
-    found, known = structure_of(read_compas(table) | {"friction": 0.7}), dome()
+def test_an_assembly_of_compas_in_space_is_its_blocks(tmp_path: Path, dem: bool) -> None:
+    table, path = compas_dome(dem=dem), tmp_path / "dome.json"
+    found, known = load_structure(written(path, table), friction=0.7), dome()
     assert len(found.assembly.joints) == len(known.assembly.joints)
     margins = [blocksim.equilibrium(each).margin for each in (found, known)]
     assert margins[0] == pytest.approx(margins[1], abs=1e-6)
@@ -188,4 +189,4 @@ def test_an_assembly_of_compas_in_space_is_its_blocks(dem: bool) -> None:
     )  # fmt: skip
     mesh["data"]["face"].popitem()
     with pytest.raises(InputError, match="open at 3 edges"):
-        read_compas(broken)
+        load_structure(written(path, broken), friction=0.7)

@@ -49,20 +49,6 @@ def pushed(problem: Problem, width: float, height: float, spin: float, step: flo
     return world
 
 
-def peaks(world: Blocks, count: int) -> list[float]:
-    """Largest rotations between impacts, of parabolas through the steps' ends."""
-    turns = [0.0, 0.0]
-    found: list[float] = []
-    while len(found) < count:
-        world.advance(1)
-        turns.append(abs(float(world.poses()[0, 2])))
-        one, two, three = turns[-3:]
-        if one < two >= three:
-            bend = one - 2 * two + three
-            found.append(two - (three - one) ** 2 / (8 * bend))
-    return found
-
-
 @pytest.mark.parametrize(
     ("duration", "amplitude"),
     [
@@ -124,19 +110,6 @@ def test_errors_fall_as_the_step_squared(motion: convergence.Motion) -> None:
     coarse, fine = (abs(motion.seen(step) / motion.truth - 1) for step in (0.05, 0.0125))
     assert coarse < 5e-4
     assert fine < coarse / 5
-
-
-@LONG
-def test_a_hundred_impacts_keep_the_amplitude() -> None:
-    """A slender block, which keeps 0.994 of its velocity in each: within 0.1 %."""
-    width, height = 0.25, 4.0
-    alpha, radius = math.atan2(width, height), math.hypot(width, height) / 2
-    squared = 3 * G / (4 * radius)
-    spin = math.sqrt(2 * squared * (math.cos(alpha - 0.03) - math.cos(alpha)))
-    found = peaks(pushed(block(width), width, height, spin, 0.025), 101)
-    speed = spin * (1 - 1.5 * math.sin(alpha) ** 2) ** 100
-    wanted = alpha - math.acos(math.cos(alpha) + speed**2 / (2 * squared))
-    assert found[100] == pytest.approx(wanted, rel=1e-3)
 
 
 def test_a_block_topples_past_half_a_right_angle() -> None:

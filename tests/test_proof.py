@@ -166,13 +166,6 @@ def test_walls_of_rounded_corners_are_answered(courses: int, decimals: int) -> N
     assert 0.2 < carried.strength_used < 1
 
 
-def test_a_wall_of_rounded_corners_is_drawn(tmp_path: Path) -> None:
-    file = tmp_path / "wall.json"
-    file.write_text(json.dumps(wall(6, 6, 10, 9, 0.7)))
-    done = blocksim("render", str(file), "--out", str(tmp_path / "wall.svg"))
-    assert done.returncode == 0, done.stderr
-
-
 @pytest.mark.parametrize("degrees", [20, 90, 150])
 @pytest.mark.parametrize("eta", [0.05, 0.5])
 def test_three_voussoirs_without_bound_on_friction(degrees: float, eta: float) -> None:

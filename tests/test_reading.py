@@ -25,8 +25,7 @@ from drawn import (
 )
 from running import inside
 
-from blocksim import InputError, Problem, bracket, check, load_structure, structure_of
-from blocksim.reading.asked import Reading
+from blocksim import InputError, Problem, Reading, bracket, check, load_structure, structure_of
 
 pytestmark = pytest.mark.usefixtures("wide_window")
 

@@ -12,8 +12,6 @@ import pytest
 from running import inside
 
 from blocksim import CircularArch, simulate
-from blocksim.common import later
-from blocksim.view import video
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
@@ -80,8 +78,7 @@ def test_what_is_missing_is_named_with_its_remedy(
     arch = CircularArch(half_angle_deg=86, eta=0.3, voussoirs=3, friction=0.7)
     simulate(arch, method="direct", duration=0.02).save(tmp_path / "run.npz")
     before = sorted(tmp_path.iterdir())
-    monkeypatch.setattr(later, "find_spec", lambda name: None if name == library else name)
-    monkeypatch.setattr(video, "find_spec", lambda name: None if name == library else name)
+    monkeypatch.setitem(sys.modules, library, None)
     done = inside(*words, cwd=tmp_path)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert remedy in done.stderr

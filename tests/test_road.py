@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import re
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -46,13 +45,6 @@ OPTIONS = (
     *("--depth", "2", "--friction-angle", "35", "--unit-weight", "22"),
 )
 UNDER = (*OPTIONS, "--fill", "0.5", "--fill-unit-weight", "18")
-PORTAL: dict[str, Any] = {
-    "kind": "portal",
-    "friction": 0.7,
-    "density": HEAVY,
-    "pier_width": 1.2,
-    "arch": {"kind": "circular-arch", "left_deg": 70, "right_deg": 70, "voussoirs": 14},
-}
 
 
 def reaction(problem: Problem) -> np.ndarray:
@@ -120,25 +112,6 @@ def vars_of(problem: Problem) -> dict[str, Any]:
     return {name: getattr(problem, name) for name in names}
 
 
-def test_a_portal_under_fill_is_held_by_what_it_weighs() -> None:
-    built = with_fill(structure_of(PORTAL), 0.4, FILL / HEAVY)
-    live = on_road(built.assembly, 12_000, -1.7, 1.6)
-    problem = Problem(**{**vars_of(built), "live": live, "load": 1.0})
-    angle, outer, inner = math.radians(70), 1.1, 0.9
-    # Beside the springings the fill goes down to the skewbacks, as far as the piers' edges.
-    edge, spring = inner * math.sin(angle) + 1.2, outer * math.cos(angle)
-    beside = (edge - outer * math.sin(angle)) * (outer + 0.4 - spring)
-    fill = FILL * (above(outer, angle, 0.4) + 2 * beside)
-    known = fill_of(problem)
-    assert known.weight == pytest.approx(fill, rel=1e-9)
-    # Piers, skewbacks below and beside the springings, and the ring.
-    low = inner * math.cos(angle)
-    pier = 1.2 * 1.0
-    skew = 1.2 * (spring - low) - (outer - inner) * math.sin(angle) * (spring - low) / 2
-    own = HEAVY * (2 * pier + 2 * skew + angle * (outer**2 - inner**2))
-    assert reaction(problem)[1] == pytest.approx(own + fill + 12_000, rel=1e-9)
-
-
 @pytest.mark.usefixtures("wide_window")
 def test_the_command_line_says_the_same() -> None:
     done = inside(
@@ -173,36 +146,6 @@ def test_the_command_line_says_the_same() -> None:
     said = inside("check", *UNDER, "--point-load", "2", "50", "--load", "0.5").stdout
     assert f"fill 0.5 m over the crown, {wanted['fill_weight_kN']:.6g} kN" in said
     assert "live loads 50 kN times 0.5, straight down to the blocks below" in said
-
-
-def test_a_load_factor_is_that_of_the_same_load_in_a_file(tmp_path: Path) -> None:
-    """The file names the voussoir and the point; the options find them."""
-    told = json.loads(inside("check", *UNDER, "--point-load", "2", "50", "--json").stdout)
-    angles = BRIDGE.joint_angles
-    outer = RADIUS + THICK / 2
-    place = int(np.searchsorted(outer * np.sin(angles), 2.0))
-    table = {
-        "kind": "circular-arch",
-        "friction": math.tan(math.radians(35)),
-        "density": HEAVY,
-        "radius": RADIUS,
-        "thickness": THICK,
-        "depth": DEPTH,
-        "voussoirs": 31,
-        "left_deg": math.degrees(ALPHA),
-        "right_deg": math.degrees(ALPHA),
-        "fill": 0.5,
-        "fill_density": FILL / HEAVY,
-        "live": [{"block": str(place), "point": [2.0, 3.8], "force": [0, -50_000]}],
-    }
-    path = tmp_path / "bridge.json"
-    path.write_text(json.dumps(table))
-    other = json.loads(inside("check", str(path), "--json").stdout)
-    assert told["load_factor"] == pytest.approx(other["load_factor"], rel=1e-9)
-    assert 1 < told["load_factor"] < 10
-    # Seen from behind it is the same bridge.
-    behind = json.loads(inside("check", *UNDER, "--point-load", "-2", "50", "--json").stdout)
-    assert behind["load_factor"] == pytest.approx(told["load_factor"], rel=1e-9)
 
 
 @pytest.mark.parametrize(("share", "code"), [(0.999, 0), (1.001, 1)])
@@ -358,21 +301,6 @@ def test_a_patch_comes_to_its_force_at_its_middle(
     )
     height = np.interp(xs, corners[:, 0], corners[:, 1]).mean()
     assert moment == pytest.approx((low + high) / 2 * down - height * across, abs=2e-4)
-
-
-def test_two_halves_of_a_patch_are_the_whole() -> None:
-    whole = structure_of({**ARCH, "live": [{"patch": [-0.5, 0.7], "force": [0, -1.2]}]})
-    parts = [
-        {"patch": [-0.5, 0.1], "force": [0, -0.6]},
-        {"patch": [0.1, 0.7], "force": [0, -0.6]},
-    ]
-    halves = structure_of({**ARCH, "live": parts})
-    factors = [collapse(each).load_factor for each in (whole, halves)]
-    assert factors[0] == pytest.approx(factors[1], rel=1e-9)
-    moved = (
-        replace(whole, load=1.0).applied_forces() - replace(halves, load=1.0).applied_forces()
-    )
-    assert np.abs(moved).max() < 1e-12
 
 
 def test_what_lies_uppermost_bears_it_and_supports_bear_their_own() -> None:

@@ -30,12 +30,10 @@ from blocksim import (
     fragility,
     load,
     load_recording,
+    read_rows,
     structure_of,
     sweep,
 )
-from blocksim.blocks.shaking import Shaking
-from blocksim.sweeps import read_rows
-from blocksim.view.style import VERDICTS
 
 
 def shaken(name: str, share: float) -> Problem:
@@ -251,13 +249,9 @@ LEAST = float(case(NAME)["expected"]["least_duration_s"])
 """Of a pulse of 0.5 g that overturns the block, in closed form."""
 
 
-def pulse(duration: float) -> Shaking:
+def pulse(duration: float) -> Any:
     """A constant acceleration, as a record."""
-    found = on_record(
-        structure_of(scenes(NAME)[0]), np.array([0, duration]), np.ones(2)
-    ).shaking
-    assert found is not None
-    return found
+    return on_record(structure_of(scenes(NAME)[0]), np.array([0, duration]), np.ones(2)).shaking
 
 
 def test_the_share_that_falls_is_that_of_pulses_long_enough() -> None:
@@ -285,7 +279,6 @@ def test_a_curve_and_a_table_are_written(tmp_path: Path) -> None:
         ("4.0", "1.0"),
     ]
     assert 'id="falls"' in curve.read_text()
-    assert VERDICTS[Verdict.COLLAPSES] in curve.read_text()  # the colour of what falls
     kept = ("--rows", str(tmp_path / "rows"), "--workers", "1")
     said = json.loads(inside(*asked, *wide, *kept, "--json").stdout)
     assert len(list(read_rows(tmp_path / "rows"))) == 2

@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
-from running import inside
 
 from blocksim import (
     Arch,
@@ -371,24 +370,6 @@ def test_dxf_has_the_blocks_it_was_drawn_from(name: str, tmp_path: Path) -> None
     assert {each.dxf.layer for each in document.modelspace()} <= set(LAYERS)
 
 
-@pytest.mark.parametrize("name", ["engineer's", "horseshoe", "portal", "wall"])
-def test_dxf_is_read_as_the_structure_it_was_drawn_from(name: str, tmp_path: Path) -> None:
-    """From its layers `blocks` and `supports` alone, the same joints are found."""
-    sheet, _ = drawn(name)
-    document = read(sheet, tmp_path)
-    blocks = [
-        {"id": f"{layer}{index}", "vertices": each.tolist(), "fixed": layer == "supports"}
-        for layer in ("blocks", "supports")
-        for index, each in enumerate(polygons(document, layer))
-    ]
-    again = structure_of({"friction": 0.7, "blocks": blocks}).assembly
-    built = sheet.problem.assembly
-    sides = [{(j.before, j.after) for j in each.joints} for each in (again, built)]
-    assert {frozenset(pair) for pair in sides[0]} == {frozenset(pair) for pair in sides[1]}
-    lengths = [sorted(joint.length for joint in each.joints) for each in (again, built)]
-    assert lengths[0] == pytest.approx(lengths[1], rel=1e-6)
-
-
 def test_dxf_has_true_dimensions(tmp_path: Path) -> None:
     """Dimension entities: what they measure, and what they show."""
     document = read(drawn("engineer's")[0], tmp_path)
@@ -412,17 +393,3 @@ def test_dxf_has_true_dimensions(tmp_path: Path) -> None:
         "span 8.000 m (intrados)", "rise 3.000 m (intrados)", "thickness 0.450 m",
         "\N{GREEK SMALL LETTER ALPHA} = 73.74°"
     }  # fmt: skip
-
-
-ASKED = ("--span", "8", "--rise", "3", "--thickness", "0.45", "--friction-angle", "35")
-
-
-def test_from_the_command_line(tmp_path: Path) -> None:
-    made = tmp_path / "arch.dxf"
-    assert inside("render", *ASKED, "--out", str(made)).returncode == 0
-    assert len(polygons(ezdxf.readfile(made), "blocks")) == 27
-    falls = tmp_path / "falls.svg"
-    assert inside("render", *ASKED, "--tilt", "35", "--out", str(falls)).returncode == 0
-    said = falls.read_text(encoding="utf-8")
-    assert "collapses" in said
-    assert "tilted 35°" in said

@@ -396,15 +396,6 @@ def test_the_least_thickness_of_a_dome(lunes: int, courses: int, least: float) -
         assert can_rest(dome.but(thickness=share * least).problem()).exists is exists
 
 
-def test_a_bracket_finds_the_least_thickness_of_a_dome_by_command() -> None:
-    """In one line, as a new user would ask."""
-    asked = "bracket dome --mu 0.7 --with lunes=8 --with courses=5 --json"
-    found = json.loads(inside(*asked.split()).stdout)
-    assert found["over"] == "thickness"
-    assert found["limit"] == pytest.approx(0.03734870324217169, rel=1e-6)
-    assert found["low"] < found["limit"] < found["high"]
-
-
 def test_a_skew_arch_is_that_of_the_case() -> None:
     """Its load factor at the crown, with the loads of the case."""
     known = case("arch_15_skew_30_crown")

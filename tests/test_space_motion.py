@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from PIL import Image
-from running import inside
 from scipy.integrate import solve_ivp
 from space_cases import GROUND, NAMES, asked, box, case, problem_of
 from worlds import observe
@@ -222,20 +219,6 @@ def test_a_film_of_what_stands_is_at_rest() -> None:
     film = Film([recording], height=180)
     assert film.speed == 0
     assert (film.frame(0)[:150] == film.frame(film.count - 1)[:150]).all()
-
-
-@pytest.mark.long
-def test_the_command_render_films_blocks_in_space(tmp_path: Path) -> None:
-    """A file of frames that are not empty, and what is said of it."""
-    out = tmp_path / "block.gif"
-    done = inside(
-        "render", "tower", "--mu", "0.6", "--with", "offset=0.52", "--with", "blocks=2",
-        "--method", "direct", "--height", "180", "--slow", "1", "--out", str(out),
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    assert "of motion" in done.stdout
-    with Image.open(out) as picture:
-        assert getattr(picture, "n_frames", 1) > 10
 
 
 ENGINES = ("pybullet", "mujoco")

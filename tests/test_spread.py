@@ -81,16 +81,6 @@ def test_span_at_collapse_by_continuation(name: str, share: float) -> None:
     assert springings == [JointState.HINGE_EXTRADOS] * 2
 
 
-@pytest.mark.long
-def test_span_at_collapse_by_slow_motion() -> None:
-    """`direct` knows nothing of hinges: its supports move slowly, and stop at times."""
-    problem = structure_of(semicircle(0.15))
-    want = case("spread_90_15_20")["expected"]["value"]
-    seen = Spreading(problem).slowly(0.005, 0.5)
-    assert 0.995 * want < seen.low < seen.high < 1.005 * want
-    assert seen.solved
-
-
 def test_closed_contacts_stay_and_open_ones_do_not_overlap() -> None:
     """Of the displaced blocks, measured as those of any recording."""
     problem = structure_of(semicircle(0.15))
@@ -261,15 +251,6 @@ def test_spread_is_one_value_however_it_is_shared(
 
 
 @pytest.mark.long
-def test_a_support_that_turns_takes_the_branch_that_rests() -> None:
-    """Two hinges may open alike at first, of which one falls at once."""
-    turns = [{"block": "right", "turn_deg": 30}]
-    path = Spreading(structure_of(semicircle(0.12, voussoirs=12, move=turns))).path
-    assert [event.what for event in path.events] == ["hinges", "collapse"]
-    assert path.first_fall == pytest.approx(0.90458816, rel=1e-6)  # as rows of analysis have it
-
-
-@pytest.mark.long
 @pytest.mark.parametrize(
     ("arch", "share"),
     [
@@ -328,19 +309,6 @@ def test_hinges_of_a_segment_migrate() -> None:
     assert hinges == [[0, 10, 20], [1, 10, 19]]
     first, caught, last = (event.value for event in path.events)
     assert first == 0 < caught < last
-
-
-def test_on_the_command_line(tmp_path: Path) -> None:
-    file = tmp_path / "arch.json"
-    file.write_text(json.dumps(apart("spread_90_12_20")))
-    want = case("spread_90_12_20")["expected"]["value"]
-    done = blocksim("bracket", str(file), "--over", "spread", "--json")
-    found = json.loads(done.stdout)
-    assert (found["over"], found["unit"], found["stands"]) == ("spread", "m", "low")
-    assert found["limit"] == pytest.approx(want, rel=1e-6)
-    assert found["low"] < found["limit"] < found["high"]
-    assert found["confirmed"]
-    assert "it falls: " in found["reason"]
 
 
 def test_moves_are_written_back() -> None:
@@ -499,17 +467,6 @@ def test_curves_are_written(tmp_path: Path) -> None:
         assert len(rows) > 10
         assert float(rows[0][name]) > 0
         assert ("to the left" if over == "push" else "least thrust") in picture.read_text()
-
-
-def test_a_wall_that_leans_tips_at_its_width_over_its_height() -> None:
-    """One block wide, 0.4 m over 1.2 m: at atan(1/3) = 18.43 deg."""
-    slim = ("--with", "length=0.4", "--with", "block_length=0.4", "--with", "bond=1")
-    wall = ("wall", "--mu", "0.7", "--unit-weight", "20", *slim)
-    limit = math.degrees(math.atan(0.4 / 1.2))
-    found = asked("bracket", *wall, "--over", "tilt")["limit"]
-    assert found == pytest.approx(limit, rel=1e-9)
-    for tilt, code in ((limit - 0.01, 0), (limit + 0.01, 1)):
-        assert asked("check", *wall, "--tilt", repr(tilt), code=code)["proved"]
 
 
 def test_a_portal_under_fill_thrusts_as_a_half_does() -> None:

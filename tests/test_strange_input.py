@@ -20,7 +20,7 @@ from strangers import packed
 
 from blocksim import Arch, Block, CircularArch, InputError, Load, load_recording
 from blocksim.blocks.problem import Move
-from blocksim.common.checks import FACTOR, FRICTION, LENGTH, Range
+from blocksim.common.checks import FACTOR, FRICTION, Range
 from blocksim.common.files import json_of, read_file, toml_of
 from blocksim.simulation import archive as recordings
 from blocksim.view import video
@@ -35,21 +35,6 @@ def one_line(done: subprocess.CompletedProcess[str], longest: int = 1000, code: 
     assert done.stderr[:-1].isprintable()
     assert len(done.stderr) <= longest + len("blocksim: \n")
     return done.stderr
-
-
-@pytest.mark.parametrize("value", [1e-6, 1e6, 1, 0.5])
-def test_the_ends_of_a_range_are_in_it(value: float) -> None:
-    assert LENGTH.has(value)
-
-
-@pytest.mark.parametrize(
-    "value",
-    [0, -1, 9.99e-7, 1.01e6, 1e308, 5e-324, math.inf, math.nan, 10**400, "1", True, None],
-)
-def test_what_is_beyond_a_range_or_no_number(value: object) -> None:
-    assert not LENGTH.has(value)
-    with pytest.raises(InputError, match=r"radius = .*: must be 1e-06 to 1e\+06 m$"):
-        LENGTH.require("radius", value)
 
 
 def test_a_range_says_what_else_it_has() -> None:

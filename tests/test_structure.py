@@ -144,21 +144,6 @@ def test_given_joints_are_taken():
     assert corner.normal.tolist() == [0, 1]
 
 
-def broken(*path: Any, to: Any = None) -> dict[str, Any]:
-    """The stack with one value changed, or left out where it is None."""
-    table = copy.deepcopy(STACK)
-    place: Any = table
-    for key in path[:-1]:
-        place = place[key]
-    if to is None:
-        del place[path[-1]]
-    elif isinstance(place, list) and path[-1] == len(place):
-        place.append(to)
-    else:
-        place[path[-1]] = to
-    return table
-
-
 UNIT = [[0, 0], [1, 0], [1, 1], [0, 1]]
 
 

@@ -75,25 +75,6 @@ def pixel(film: Film, frame: np.ndarray, point: np.ndarray) -> np.ndarray:
     return frame[film.height - 1 - int(y), int(x), :3].astype(int)
 
 
-def test_pieces_are_rigid_parts_of_their_blocks() -> None:
-    """Four pieces of three blocks; every corner is the block's, turned about its centre."""
-    problem = yard()
-    stage = Stage(lifted(problem))
-    assembly = problem.assembly
-    assert stage.owner.tolist() == [0, 0, 1, 2]
-    moment = stage.at(stage.end)
-    poses = problem.assembly.built[:-1] + [[0, 0.3 + 0.2 * k, 0.5 * (1 + k)] for k in range(3)]
-    pieces = [(k, part) for k, b in enumerate(assembly.blocks) for part in b.polygons]
-    for (index, part), seen in zip(pieces, moment.corners, strict=True):
-        x, y, turn = poses[index]
-        cos, sin = math.cos(turn), math.sin(turn)
-        arms = (part - assembly.centres[index]) / assembly.size
-        expected = arms @ np.array([[cos, sin], [-sin, cos]]) + [x, y]
-        for face, z in zip(seen, (0.5, -0.5), strict=True):
-            np.testing.assert_allclose(face[: len(part), :2], expected, atol=1e-12)
-            np.testing.assert_allclose(face[:, 2], z / assembly.size, atol=1e-12)
-
-
 def test_joints_are_on_parts_of_faces() -> None:
     """The triangle covers half of one of the L's faces: the mark is no longer than that."""
     problem = yard()

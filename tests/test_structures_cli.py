@@ -124,16 +124,6 @@ def test_a_structure_is_let_go_and_read_back(stack: str, tmp_path: Path) -> None
     assert np.ptp(turns) < 1e-3 * abs(turns.min())
 
 
-def test_an_arch_on_a_tilted_table() -> None:
-    """The same arch as a scenario, asked by limit analysis and by direct."""
-    arch = ("semicircle", "--eta", "0.15")
-    most = json.loads(blocksim("bracket", *arch, "--over", "tilt", "--json").stdout)["limit"]
-    for share, code in ((0.999, 0), (1.001, 1)):
-        for method in ("limit", "direct"):
-            asked = ("check", *arch, "--method", method, "--tilt", str(share * most))
-            assert blocksim(*asked).returncode == code
-
-
 def test_least_friction_of_a_wedge_beside_a_block_on_a_slope(tmp_path: Path) -> None:
     """A plug in a gap that widens by 10 deg to each side downwards is held from tan 10 deg on.
 

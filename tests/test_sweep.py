@@ -24,12 +24,13 @@ from blocksim import (
     bracket,
     check,
     check_many,
+    read_rows,
     sweep,
     to_pandas,
+    write_csv,
+    write_parquet,
 )  # fmt: skip
-from blocksim import sweep as public_sweep
-from blocksim.common import later
-from blocksim.sweeps import Case, answers, read_rows, run, write_csv, write_parquet
+from blocksim.sweeps import Case, answers, run
 from blocksim.sweeps import table as tables
 from blocksim.sweeps.answers import Answered, Asked, answer
 from blocksim.sweeps.shards import identities
@@ -186,7 +187,7 @@ def test_an_arch_is_a_kind_like_any_other(tmp_path: Path) -> None:
     )
     with ThreadPoolExecutor(1) as executor:
         for design in designs:
-            public_sweep(design, tmp_path, executor=executor)
+            sweep(design, tmp_path, executor=executor)
     rows = list(rows_of(tmp_path).values())
     assert len(rows) == 2 + 4 + 2 + 1
     for row in rows:
@@ -411,7 +412,7 @@ def test_a_table_of_pandas_is_that_of_the_csv(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with monkeypatch.context() as without:
-        without.setattr(later, "find_spec", lambda _: None)
+        without.setitem(sys.modules, "pandas", None)
         with pytest.raises(MissingPart, match=r"pip install 'blocksim\[pandas\]'"):
             to_pandas(tmp_path)
     pandas = pytest.importorskip("pandas")

@@ -119,20 +119,6 @@ def test_what_is_killed_leaves_no_process_and_loses_no_row(
     assert {name: found[name] for name in uninterrupted} == uninterrupted
 
 
-# Of `validate`, which ends by the same code, test_interrupts has it in every run.
-@pytest.mark.long
-def test_a_terminated_sweep_ends_with_one_line(tmp_path: Path) -> None:
-    asked, out = written(tmp_path, FOR_MINUTES), tmp_path / "out"
-    with started(*asked, "--workers", "1") as driver:
-        until(lambda: shards(out) > 0, driver)
-        workers = children(driver.pid)
-        driver.terminate()
-        assert driver.stderr.read() == b"blocksim: interrupted\n"
-        assert driver.wait() == 143
-    until(lambda: not any(alive(pid) for pid in workers))
-    assert rows_of(out)
-
-
 CLUSTER = """
 import sys
 from distributed import LocalCluster
@@ -171,21 +157,3 @@ def test_a_dask_cluster_gives_the_same_rows(tmp_path: Path, uninterrupted: Rows)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["rows"] == 40
     assert rows_of(tmp_path / "out") == uninterrupted
-
-
-@pytest.mark.long
-def test_a_killed_worker_of_a_dask_cluster_loses_nothing(
-    tmp_path: Path, uninterrupted: Rows
-) -> None:
-    asked = written(tmp_path, SIMULATED.replace("count = 20", "count = 200"))
-    out = tmp_path / "out"
-    with (
-        cluster(tmp_path, 2) as (address, owner),
-        started(*asked, "--scheduler", address) as driver,
-    ):
-        until(lambda: shards(out) > 1, driver)
-        os.kill(children(owner)[0], signal.SIGKILL)
-        assert driver.wait() == 0
-    found = rows_of(out)
-    assert len(found) == 400
-    assert {name: found[name] for name in uninterrupted} == uninterrupted

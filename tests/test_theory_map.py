@@ -260,25 +260,6 @@ def test_the_rotational_mode_ends_in_r(weight: str) -> None:
     assert names == [(Mode.RRR,), (Mode.R,), (Mode.R,)]
 
 
-@pytest.mark.parametrize(
-    ("eta", "mu", "mode"),
-    [
-        (0.3, 2.0, "rrr"),
-        (0.3, 0.3, "ss"),
-        (1.5, 1.0, "ss"),
-        (0.3, 0.6, "srr"),
-        (0.85, 2.5, "rrs"),
-        (0.963, 1.79, "rsr"),
-        (1.4, 3.0, "rs"),
-        (1.4, math.inf, "r"),
-        (0.7, math.inf, "rrr"),
-        (1e-9, 0.2, "rrr"),
-    ],
-)
-def test_regions_of_fig_9(eta: float, mu: float, mode: str) -> None:
-    assert at_points(eta, mu).regions.item() == (Mode(mode),)
-
-
 @pytest.mark.parametrize("weight", WEIGHTS)
 def test_landmarks_belong_to_all_their_regions(weight: str) -> None:
     around = {"T": 4, "S": 3, "J": 3, "B": 2}

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +28,6 @@ from blocksim import (
     simulate,
     structure_of,
 )
-from blocksim.blocks.shaking import read_table
 
 G = 9.81
 BOTH = pytest.mark.parametrize("method", ["direct", "pymunk"])
@@ -169,10 +167,17 @@ def test_a_record_with_a_vertical_part_is_read_and_written(
 def test_a_record_of_three_columns(tmp_path: Path) -> None:
     path = tmp_path / "record.csv"
     path.write_text("time_s,acceleration_g,vertical_g\n0,0.2,0.1\n2,0.2,0.1\n")
-    shaking = read_table(path)
-    assert shaking.gained(0, 2) == pytest.approx([0.4, 0.2])
-    assert replace(shaking, amplitude=0.4).gained(0, 2) == pytest.approx([0.8, 0.4])
-    assert "0.1 g upwards" in shaking.words
+    asked = ("check", "column", "--mu", "0.7", "--shake", str(path), "--method", "direct")
+    told = json.loads(inside(*asked, "--json").stdout)["problem"]["shake"]
+    assert told == {
+        "times_s": [0, 2], "accelerations_g": [0.2, 0.2], "verticals_g": [0.1, 0.1]
+    }  # fmt: skip
+    twice = json.loads(inside(*asked, "--amplitude", "0.4", "--json").stdout)["problem"][
+        "shake"
+    ]
+    assert twice["accelerations_g"] == pytest.approx([0.4, 0.4])
+    assert twice["verticals_g"] == pytest.approx([0.2, 0.2])
+    assert "0.1 g upwards" in inside(*asked).stdout
 
 
 def test_what_begins_in_motion_is_written_and_read(tmp_path: Path) -> None:

@@ -251,18 +251,6 @@ def test_a_block_in_a_wedge_must_rest(mu: float) -> None:
     assert may_start(between_walls(0.3, mu)).moves is False
 
 
-# In every run test_two_answers has the end of such a band: that of a keystone.
-@pytest.mark.long
-def test_a_wide_arch_of_seven_may_move_up_to_a_third_above_its_least_thickness() -> None:
-    # The ends of the band by another method are in analysis/two_answers.py.
-    within, above = arch(3.0, 1.38, 7), arch(3.0, 1.39, 7)
-    assert equilibrium(within).exists
-    start = may_start(within)
-    assert start.moves
-    assert wrong(within, start) < 1e-6
-    assert may_start(above).moves is False
-
-
 def test_its_motion_is_none_with_other_friction() -> None:
     problem = arch(3.0, 1.05)
     start = may_start(problem)

@@ -26,13 +26,28 @@ class Unit:
 
 @dataclass(frozen=True, kw_only=True)
 class Reading:
-    """How a drawing is to be read.
+    """How a drawing or a mesh is to be read.
 
-    `unit`: Metres that a unit of the drawing is, or one of `UNITS`; by default what it says.
-    `layers`: Names of layers by their role: `blocks`, `supports`, `ignored`. Case does not
-        matter.
-    `snap`: Ends of lines that are so near to each other are one corner [m]; by default a
+    Parameters
+    ----------
+    unit : float or str, optional
+        Metres that a unit of the drawing is, or m, mm, cm, dm, in or ft; by default what the
+        drawing says.
+    layers : mapping of str to sequence of str
+        Names of layers by their role: `blocks`, `supports`, `ignored`. Case does not matter.
+    snap : float, optional
+        Ends of lines that are so near to each other are one corner [m]; by default a
         ten-thousandth of the shorter line.
+
+    Raises
+    ------
+    InputError
+        For a unit or a distance out of range, and for a layer with two roles.
+
+    Examples
+    --------
+    >>> Reading(unit="mm", layers={"blocks": ["stones"]}).unit
+    'mm'
     """
 
     unit: float | str | None = None

@@ -7,9 +7,8 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
+from running import inside
 from windows import Windows
-
-from blocksim.view.explorer import explorer_page, read_results
 
 
 @pytest.fixture(scope="session")
@@ -28,9 +27,9 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     ]  # fmt: skip
     results = folder / "validate.json"
     results.write_text(json.dumps({"rows": rows}), encoding="utf-8")
-    page = folder / "map.html"
-    page.write_text(explorer_page(read_results(results), "validate.json"), encoding="utf-8")
-    return page.as_uri()
+    done = inside("map", "--out", "map.html", "--results", "validate.json", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    return (folder / "map.html").as_uri()
 
 
 Open = Callable[..., Any]

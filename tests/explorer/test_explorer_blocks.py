@@ -23,7 +23,6 @@ from blocksim import (
     load_structure,
     structure_of,
 )
-from blocksim.view.explorer.page import SHIPPED
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
@@ -161,7 +160,7 @@ def drag(page: Any, what: str, across: float, down: float) -> None:
 
 def test_shipped_structures_stand_in_the_page_as_they_do_in_python(page: Any) -> None:
     to_own(page)
-    for name in SHIPPED:
+    for name in ("box2d_arch", "ferris_tinloi_3", "gable", "harmonic_5"):
         page.select_option("#structure", name)
         stands = equilibrium(load_structure(name)).exists
         assert told(page).startswith("Stands" if stands else "Collapses")

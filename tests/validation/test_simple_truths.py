@@ -10,17 +10,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from own_balance import violation
 from scipy.optimize import brentq
-from worlds import Simulation, get_engine, onset
+from worlds import get_engine, observe
 
 from blocksim import Assembly, Block, Joint, Problem, Verdict
-from blocksim.simulation.motion import LONGEST, MOVED, QUIET
 
 BELOW, ABOVE = 0.99, 1.01
 SLOPES = [5.0, 20.0, 40.0]
@@ -60,26 +58,11 @@ def settles(
 
     `patience` multiplies the sweeps allowed to the onset test.
     """
-    library = get_engine(engine)
-    chosen = library.rule(assembly)
-    settings = replace(chosen, hold_sweeps=chosen.hold_sweeps * patience)
     problem = Problem(assembly=assembly, mu=mu).leaning(lean)
-    simulation = Simulation(problem=problem, engine=library, settings=settings)
-    world = simulation.world()
-    held = onset(world, simulation)
-    if held.verdict is Verdict.UNDECIDED or not moving or engine == "mujoco":
-        return held.verdict
-    start, time, moved = world.poses(), 0.0, 0.0
-    steps = max(1, round(0.1 / settings.step))
-    while moved < MOVED and time < LONGEST and not (time >= QUIET and moved < settings.rest):
-        world.advance(steps)
-        time += steps * settings.step
-        moved = float(assembly.displacement(world.poses() - start))
-    if moved >= MOVED:
-        seen = Verdict.COLLAPSES
-    else:
-        seen = Verdict.STANDS if moved < settings.rest else Verdict.UNDECIDED
-    return seen if seen is held.verdict else Verdict.UNDECIDED
+    usual = get_engine(engine).rule(assembly).hold_sweeps
+    settings = {"hold_sweeps": patience * usual} if patience > 1 < usual else {}
+    moving = moving and engine != "mujoco"
+    return observe(problem, engine, moving=moving, settings=settings).verdict
 
 
 def holds_both_sides(verdict: Callable[[float], Verdict]) -> None:
