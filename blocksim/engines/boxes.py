@@ -1,4 +1,4 @@
-"""Where blocks lie in a three-dimensional engine, and the boxes on their faces."""
+"""How motions are written in a three-dimensional engine, and the boxes on their faces."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SPATIAL, Array, Assembly
@@ -24,80 +25,39 @@ EDGE = 1e-2
 """The same, of one that stands on its edge [size]."""
 PLACES, TURNS = [0, 1, 3], [4, 5, 2]
 """Columns of the poses of the plane that make a place, and a rotation vector."""
+UNTURNED = (0.0, 0.0, 0.0, 1.0)
+"""Quaternion of a body that is not turned."""
 LEAST_TURN = 1e-2
 """Rotation below which that of a block does not tell its axis [rad]."""
 
 
 class Frame:
-    """Where an assembly lies in the engine's space, and how its motions are written.
+    """How motions of bodies are written.
 
-    `turn`: About the vertical [rad].
-    `origin`: Place of the assembly's origin [size].
     `columns`: Of x, y, z and of a rotation vector among those of motions.
-    `built`, (blocks, 4): Quaternions with which bodies are built; by default as the frame is.
+    `built`, (blocks, 4) or (4,): Quaternions with which bodies are built.
     """
 
     def __init__(
-        self,
-        turn: float = 0.0,
-        origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
-        columns: Sequence[int] = (*PLACES, *TURNS),
-        built: Array | None = None,
+        self, columns: Sequence[int] = (*PLACES, *TURNS), built: ArrayLike = UNTURNED
     ) -> None:
-        self._turned = Rotation.from_rotvec([0.0, turn, 0.0])
-        self._origin, self._columns = np.array(origin), list(columns)
-        self._built = self._turned if built is None else Rotation.from_quat(built)
-
-    def vector(self, x: float, y: float, z: float) -> list[float]:
-        """Turn a vector of the assembly into the engine's space; z is out of a plane."""
-        turned: list[float] = self._turned.apply([x, y, z]).tolist()
-        return turned
-
-    def place(self, centre: Array) -> list[float]:
-        """Where a point of the plane lies, x, y, z."""
-        x, y, z = self.vector(centre[0], centre[1], 0.0)
-        return [x + self._origin[0], y + self._origin[1], z + self._origin[2]]
-
-    @property
-    def quaternion(self) -> list[float]:
-        """How a block at rest is turned."""
-        turned: list[float] = self._turned.as_quat().tolist()
-        return turned
+        self._columns, self._built = list(columns), Rotation.from_quat(built)
 
     def motions(self, linear: Array, angular: Array) -> Array:
-        """Return velocities in the assembly's columns, shape (blocks, 6).
-
-        `linear`, `angular`, (blocks, 3): In the engine's space.
-        """
-        back, found = self._turned.inv(), np.zeros((len(linear), SPATIAL))
-        found[:, self._columns] = np.hstack([back.apply(linear), back.apply(angular)])
+        """Return velocities (blocks, 3) along and about the engine's axes as columns."""
+        found = np.zeros((len(linear), SPATIAL))
+        found[:, self._columns] = np.hstack([linear, angular])
         return found
 
     def told(self, motion: Array) -> tuple[list[float], list[float]]:
-        """Return a motion in the assembly's columns, (6,), as vectors of the engine's space."""
-        x, y, z, *turns = motion[self._columns].tolist()
-        return self.vector(x, y, z), self.vector(*turns)
-
-    def flat(self, place: Array, shift: Array) -> tuple[list[float], list[float]]:
-        """Return a place and a velocity, (3,) each, without what is out of the plane."""
-        x, y, _ = self._turned.inv().apply(shift)
-        return self.place(self.point(place)), self.vector(x, y, 0.0)
-
-    def point(self, place: Array) -> Array:
-        """Where in the plane a place (3,) lies, x and y."""
-        x, y, _ = self._turned.inv().apply(place - self._origin)
-        return np.array([x, y])
-
-    def wrench(self, place: Array, force: Array) -> Array:
-        """Return a force (3,) at a place (3,) as x, y and moment in the plane, (3,)."""
-        back = self._turned.inv()
-        (x, y, _), (right, up, _) = back.apply([place - self._origin, force])
-        return np.array([right, up, x * up - y * right])
+        """Return a motion in columns, (6,), as vectors along and about the engine's axes."""
+        found: list[float] = motion[self._columns].tolist()
+        return found[:3], found[3:]
 
     def poses(self, places: Array, quaternions: Array) -> Array:
         """Return places (blocks, 3) and orientations x, y, z, w (blocks, 4) likewise."""
         since = Rotation.from_quat(quaternions) * self._built.inv()
-        return self.motions(places - self._origin, since.as_rotvec())
+        return self.motions(places, since.as_rotvec())
 
 
 def unwound(turned: Array, before: Array) -> Array:

@@ -20,7 +20,7 @@ How a near-critical arch has to be put into it, each point measured:
   ones, as others take, leave a hundred times more that no sweeps remove (1e-6 g).
 - Where gravity leans out of the plane inertias are the true ones.
 
-Bullet's x and y are those of the assembly's plane, z is out of it. In that frame the two
+Bullet's x and y are those of the assembly's plane, z is out of it. So the two
 directions of friction Bullet chooses at rest lie in the plane and across it.
 """
 
@@ -37,7 +37,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly
 from blocksim.blocks.problem import Problem
-from blocksim.engines.boxes import EDGE, TURNS, Frame, edge, plate
+from blocksim.engines.boxes import EDGE, TURNS, UNTURNED, Frame, edge, plate
 from blocksim.engines.bulletparts import Ends, Joints, Link, let_go, linked, met
 from blocksim.engines.bulletspace import SLOP, Space, State, friction_share
 from blocksim.engines.faces import LEDGE, LEDGE_SHARE, Side, reaching, sides_of
@@ -61,16 +61,13 @@ BESIDE = 1e-7
 
 
 class Planar(Polygons):
-    """The blocks of a problem in the plane as bodies: the parts that `bulletmotion` moves.
-
-    `frame`: Where in Bullet's frame the assembly lies.
-    """
+    """The blocks of a problem in the plane as bodies: the parts that `bulletmotion` moves."""
 
     turns = TURNS
 
-    def __init__(self, problem: Problem, frame: Frame) -> None:
+    def __init__(self, problem: Problem) -> None:
         super().__init__(problem)
-        self.frame = frame
+        self.frame = Frame()
         self.reach: Array = self.assembly.reach / self.assembly.size
         self.states = [self._at(index) for index in range(len(self.assembly.blocks))]
         self.breaking = MERGED if problem.is_planar else _breaking(self.assembly)
@@ -99,9 +96,8 @@ class Planar(Polygons):
         if not self.problem.is_planar:
             return
         for index in np.flatnonzero(np.abs(poses[:, PLANAR]) > BESIDE):
-            place, turn, shift, spin = space.state(bodies[index])
-            at, along = self.frame.flat(np.array(place), np.array(shift))
-            space.put(bodies[index], State(at, turn, along, spin))
+            (x, y, _), turn, (right, up, _), spin = space.state(bodies[index])
+            space.put(bodies[index], State((x, y, 0.0), turn, (right, up, 0.0), spin))
 
     def linked(self, space: Space, reaches: Array | None = None) -> tuple[list[int], Joints]:
         """Create a body with links for each block, and one for the support.
@@ -163,25 +159,27 @@ class Planar(Polygons):
         for index, state in enumerate(states):
             deep = float(assembly.depths[index])
             text = obj_text(prism(each, deep) for each in polygons[index])
-            built = State(state.place, self.frame.quaternion)
+            built = State(state.place, UNTURNED)
             bodies.append(space.hulls(text, own, built, _masses(self.problem, index)))
         # As deep as it is drawn.
         deep = float(assembly.depths.max())
         for polygon in self.solids.fixed:
             middle = polygon.mean(axis=0)
             text = obj_text([prism(polygon - middle, deep)])
-            space.hulls(text, own, self._of(middle))
-        space.floor(own, self._of(np.array([0.0, self.solids.level])), [0.0, 1.0, 0.0])
+            space.hulls(text, own, _at_rest(middle))
+        space.floor(own, _at_rest(np.array([0.0, self.solids.level])), [0.0, 1.0, 0.0])
         return let_go(space, bodies, states, self.problem.gravity)
 
     def _at(self, index: int) -> State:
         """Return how the body of a block, or of the support, is built."""
         if index == SUPPORT:
-            return self._of(np.zeros(2))
-        return self._of(self.assembly.blocks[index].centre / self.assembly.size)
+            return _at_rest(np.zeros(2))
+        return _at_rest(self.assembly.blocks[index].centre / self.assembly.size)
 
-    def _of(self, place: Array) -> State:
-        return State(self.frame.place(place), self.frame.quaternion)
+
+def _at_rest(place: Array) -> State:
+    """Return how a body is built at a place in the plane, (2,)."""
+    return State([*place.tolist(), 0.0], UNTURNED)
 
 
 def _masses(problem: Problem, index: int) -> list[float] | None:

@@ -18,7 +18,7 @@ from scipy.spatial.transform import Rotation
 from blocksim.blocks.assembly import SPATIAL, SUPPORT, Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
-from blocksim.engines.boxes import Box, Frame
+from blocksim.engines.boxes import UNTURNED, Box, Frame
 from blocksim.engines.bulletparts import Joints, Link, let_go, linked, met
 from blocksim.engines.bulletspace import NOTHING, SLOP, Space, State, friction_share
 from blocksim.engines.polyhedra import Polyhedra
@@ -28,7 +28,7 @@ CORNER = 0.05
 BREAKING = 0.1
 """Bullet's breaking threshold, in units of a box."""
 DIAGONAL = np.ones(3) / math.sqrt(3.0)
-UNMOVED = State(NOTHING, (0.0, 0.0, 0.0, 1.0))
+UNMOVED = State(NOTHING, UNTURNED)
 """How supports are built."""
 
 

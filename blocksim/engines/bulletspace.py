@@ -80,7 +80,7 @@ class Space:
     A body has its share of a friction (`friction_share`). Its masses are its mass and its
     moments of inertia about x, y and z; one without them stays where it is.
 
-    `frame`: Where the axes of an assembly lie in Bullet's frame.
+    `frame`: How motions of bodies are written.
     `breaking`: Breaking threshold: points of contact closer than that replace each other.
     """
 
@@ -131,7 +131,7 @@ class Space:
 
     def pull(self, gravity: Array) -> None:
         """Let gravity act, (3,)."""
-        self._client.setGravity(*self.frame.vector(*gravity.tolist()))
+        self._client.setGravity(*gravity.tolist())
 
     def push(self, body: int, load: Array) -> None:
         """Load a body in the next step, (6,) in columns of poses; Bullet forgets it after."""

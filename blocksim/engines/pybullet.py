@@ -15,12 +15,9 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.common.checks import require
 from blocksim.engines.base import Engine, Settings, World
-from blocksim.engines.boxes import Frame
 from blocksim.engines.bulletblocks import Planar
 from blocksim.engines.bulletmotion import STEP, SWEEPS, Moving
 from blocksim.engines.bulletspace import MOST_FRICTION
-
-UNTURNED = Frame()
 
 DEEPEST = 1.5e-6
 """Overlap of blocks as built from which they are not trusted [size]."""
@@ -94,13 +91,9 @@ def blocks_in_space(problem: Problem[SpatialAssembly], settings: Settings) -> Wo
 
 
 class Bodies(Moving):
-    """Blocks of the plane in Bullet, which tell what their joints carry.
+    """Blocks of the plane in Bullet, which tell what their joints carry."""
 
-    `frame`: Where in Bullet's frame the assembly lies, turned about the vertical. It should not
-        matter, and this is how to see whether it does.
-    """
-
-    def __init__(self, problem: Problem, settings: Settings, frame: Frame = UNTURNED) -> None:
+    def __init__(self, problem: Problem, settings: Settings) -> None:
         work = settings.sweeps * len(problem.assembly.blocks)
         require(
             work <= MOST_WORK or _is_row(problem.assembly),
@@ -109,7 +102,7 @@ class Bodies(Moving):
             f"at most {MOST_WORK:g}: short joints ask pybullet for more "
             "(--method direct, or fewer by --set sweeps=)",
         )
-        self._plane = Planar(problem, frame)
+        self._plane = Planar(problem)
         super().__init__(self._plane, settings)
 
     def resultants(self) -> Array:
@@ -117,13 +110,14 @@ class Bodies(Moving):
         found = np.zeros((len(self._plane.assembly.joints), 3))
         for pair, place, force in self._space.contacts():
             joint, sense = self._nearest(self._joints[pair], place)
-            found[joint] += sense * self._plane.frame.wrench(place, force)
+            (x, y, _), (right, up, _) = place, force
+            found[joint] += sense * np.array([right, up, x * up - y * right])
         return found
 
     def _nearest(self, joints: list[tuple[int, float]], place: Array) -> tuple[int, float]:
         """Tell which joint of two blocks a contact belongs to."""
-        point, ends = self._plane.frame.point(place), self._plane.assembly.joint_arrays.ends
-        return min(joints, key=lambda each: np.hypot(*(ends[each[0]] - point).T).min())
+        ends = self._plane.assembly.joint_arrays.ends
+        return min(joints, key=lambda each: np.hypot(*(ends[each[0]] - place[:2]).T).min())
 
 
 ENGINE = Engine(
