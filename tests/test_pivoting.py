@@ -19,7 +19,7 @@ from scipy.spatial import ConvexHull
 from worlds import DIRECT, Blocks, ContactProblem
 
 from blocksim import Arch, CircularArch, Problem, collapse, equilibrium
-from blocksim.engines.contact.banded import Bands
+from blocksim.engines.contact.banded import Bands, System
 from blocksim.engines.contact.coulomb import Friction
 from blocksim.engines.contact.meeting import Polygons
 from blocksim.engines.contact.path_following import path_from_apart
@@ -255,6 +255,37 @@ def keeps_the_law_of_its_own_friction(seed, blocks):
     bound = mu[~free_of, None] * pressure[~free_of]
     most = np.maximum(1.0, mu[~free_of, None]) * 1e-6 * scale
     assert (np.abs(friction[~free_of]) - bound - most).max(initial=-1) < 0
+
+
+def test_a_change_of_forces_that_falls_slowly_is_followed_to_its_end():
+    """By four hundredths in a system; taken for one without end it leads far away."""
+    keeps_the_law_of_its_own_friction(1250, 5)
+
+
+def test_stiff_springs_of_a_wide_system_come_and_go_and_keep_their_digits():
+    """Their forces are a hundred-millionth of what makes them up."""
+    random, stiff, blocks = np.random.default_rng(3), 1e8, 30
+    before = random.integers(0, blocks, 60)
+    after = (before + random.integers(1, blocks, 60)) % blocks
+    bands = Bands(before, after, blocks)
+    assert bands.is_wide
+    rows, pushes = random.normal(size=(60, 6)), random.uniform(1, 2, 60)
+    free = random.normal(size=bands.size)
+    nothing = bands.band(np.zeros((60, 1, 6)), np.zeros((60, 1)), np.zeros((60, 1, 6)))
+    system, closed = System(bands, nothing, free), np.zeros(60, dtype=bool)
+    for joint in random.integers(0, 60, 100):
+        sign = -stiff if closed[joint] else stiff
+        closed[joint] = ~closed[joint]
+        row = rows[joint]
+        system.add(joint, sign * np.outer(row, row), sign * pushes[joint] * row)
+        found = stiff * (pushes - (rows * bands.of_joints(system.solve())).sum(axis=1))
+        ways = np.zeros((closed.sum(), bands.size + 1))
+        for way, at in zip(ways, np.flatnonzero(closed), strict=True):
+            np.add.at(way, bands.place[at], rows[at])
+        ways = ways[:, :-1]
+        flexible = np.eye(len(ways)) / stiff + ways @ ways.T
+        forces = np.linalg.solve(flexible, pushes[closed] - ways @ free)
+        assert np.abs(found[closed] - forces).max(initial=0.0) < 1e-4
 
 
 def test_without_slip_a_pushed_block_turns_over_its_corner_and_does_not_slide():

@@ -33,7 +33,7 @@ NO_YIELD = 1e-13
 """Yield of contacts that is round-off, over the accelerations."""
 UNSURE = 0.1
 SLOW, DRIFT = 0.1, 0.9
-"""What is left of a yield after a system, from which it is slow, and without end."""
+"""What is left of a yield after a system, from which it is slow, and may be round-off."""
 RIGID = 1e-7
 """Yield without end that is round-off, over accelerations, or velocities over the step: faces
 that do not quite fit."""
@@ -144,7 +144,7 @@ def _is_nothing(
 def _reach(step: Step, forces: Array, change: Array, ratio: float) -> float:
     """Return how often a change can be repeated until a contact opens or slides.
 
-    It goes on, less each time by a ratio, or until a contact gives way.
+    It goes on, less each time by a ratio, however slowly, or until a contact gives way.
     Two contacts of a joint that stick although the blocks turn work against each other,
     at equal accelerations, more from round to round, until one of them slides.
     """
@@ -153,7 +153,7 @@ def _reach(step: Step, forces: Array, change: Array, ratio: float) -> float:
     room = np.stack([pressure] + [a * pressure - s * b * forces[:, 2:] for s in (1, -1)])
     loss = -np.stack([growth] + [a * growth - s * b * change[:, 2:] for s in (1, -1)])
     ahead = (loss > 0) & (room > loss)
-    most = ratio / (1 - ratio) if ratio < DRIFT else FARTHEST
+    most = ratio / (1 - ratio) if ratio < 1 else FARTHEST
     return min(most, float((room[ahead] / loss[ahead]).min(initial=FARTHEST)))
 
 

@@ -240,7 +240,7 @@ class System:
         place = self._bands.place[joint]
         self._band[self._bands.whole[joint]] += matrix.ravel()
         self._right[place] += right
-        if self._factored and not self._factored.add(place, matrix, right):
+        if self._factored and not self._factored.add(joint, place, matrix, right):
             self._factored = None
 
     def solve(self, besides: Array | None = None) -> Array:
@@ -266,14 +266,21 @@ class _Factored:
 
     def __init__(self, solve: Callable[[Array], Array], right: Array) -> None:
         self._solve, self._bare = solve, solve(right)
-        self._count, size = 0, len(right) + 1
+        self._count, self._changed, size = 0, set[int](), len(right) + 1
         # Solutions for the columns; rows by the six places where they are not 0.
         self._answers = np.zeros((size, MOST_CHANGES), order="F")
         self._places = np.zeros((MOST_CHANGES, 6), dtype=np.int64)
         self._rows = np.zeros((MOST_CHANGES, 6))
+        self._right = np.zeros(MOST_CHANGES)
 
-    def add(self, place: NDArray[np.int64], matrix: Array, right: Array) -> bool:
-        """Add at a joint's places; False where that is too much by now."""
+    def add(self, joint: int, place: NDArray[np.int64], matrix: Array, right: Array) -> bool:
+        """Add at a joint's places; False where that is too much by now.
+
+        What takes a stiff change back would cancel all of its digits.
+        """
+        if joint in self._changed:
+            return False
+        self._changed.add(joint)
         parts = [each / (np.abs(each).max() or 1.0) for each in (matrix, right[:, None])]
         ways, sizes, _ = np.linalg.svd(np.concatenate(parts, axis=1))
         ways = ways[:, sizes > NO_RANK * sizes[0]]
@@ -282,10 +289,9 @@ class _Factored:
             return False
         columns = np.zeros((len(self._answers), new - old))
         columns[place] = ways
-        answers = self._solve(columns[:-1])
-        self._bare = self._bare + answers @ (ways.T @ right)
-        self._answers[:-1, old:new] = answers
+        self._answers[:-1, old:new] = self._solve(columns[:-1])
         self._places[old:new], self._rows[old:new] = place, ways.T @ matrix
+        self._right[old:new] = ways.T @ right
         self._count = new
         return True
 
@@ -297,8 +303,11 @@ class _Factored:
         rows, places = self._rows[:count, :, None], self._places[:count]
         small = np.eye(count) + (rows * self._answers[places, :count]).sum(axis=1)
         seen: Array = (rows * np.vstack([bare, np.zeros(bare.shape[1])])[places]).sum(axis=1)
+        # Both are large where springs are stiff; their difference is not.
+        wanted = -seen
+        wanted[:, 0] += self._right[:count]
         shares = np.full(seen.shape, np.nan)
         with suppress(np.linalg.LinAlgError):
-            shares[:] = np.linalg.solve(small, seen)
-        x: Array = bare - self._answers[:-1, :count] @ shares
+            shares[:] = np.linalg.solve(small, wanted)
+        x: Array = bare + self._answers[:-1, :count] @ shares
         return x[:, 0] if besides is None else x

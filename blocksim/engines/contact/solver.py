@@ -19,7 +19,8 @@ What each contact does is guessed, and mended until all forces and velocities ag
 - the end of an interior-point method for Coulomb friction, steep one taken to be less;
 - the end of a short path that begins there;
 - of friction that is not steep, the end of that method with shorter steps, and what springs
-  make of it, then of the way of alternating directions from there (`alternating.py`);
+  make of it, then of the way of alternating directions from there (`alternating.py`), and the
+  end of a short path from the best of these;
 - the end of a path that begins with all contacts apart (`path_following.py`), of steep
   friction with the forces found so far first.
 """
@@ -304,6 +305,8 @@ def _at_last(step: Step, tried: _Tried) -> Iterator[Answer | None]:
             if tried.is_enough:
                 return
             yield found
+        if not tried.is_enough:
+            yield path_from_guess(step, tried.best, NEAREST_PIECES)
     if not tried.is_enough:
         yield path_from_apart(step)
 
