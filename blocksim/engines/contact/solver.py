@@ -213,9 +213,12 @@ class ContactProblem:
             yield path_from_guess(step, last, NEAREST_PIECES)
         if not tried.is_enough:
             yield path_from_guess(step, first)
-        if steep and not tried.is_enough:
+        if not steep:
+            yield from _at_last(step, tried)
+            return
+        if not tried.is_enough:
             yield path_from_apart(step, last.forces)
-        yield from _at_last(step, tried)
+        yield path_from_apart(step)
 
 
 class _Tried:
