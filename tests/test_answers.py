@@ -42,6 +42,7 @@ CHECKS = (
     "pointed-arch --mu 0.7 --tilt 4",
     "oppenheim_7 --load 0.4 --method direct",
     f"column --mu 0.7 {PULSE}",
+    "tower --mu 0.7 --with blocks=2",
 )
 BRACKETS = (
     "--alpha 90 --mu 0.7 --method theory",
@@ -53,6 +54,7 @@ BRACKETS = (
     "pointed-arch --mu 0.7 --over tilt --method direct",
     "oppenheim_7 --over load",
     "spread_90_12_20 --over spread",
+    "tower --mu 0.7 --with blocks=2 --over offset",
 )
 
 

@@ -65,14 +65,6 @@ def legend(figure: Figure) -> set[str]:
     return {text.get_text() for text in figure.legends[0].get_texts()}
 
 
-def lines(figure: Figure, name: str) -> list[np.ndarray]:
-    return [
-        np.column_stack(line.get_data())
-        for line in figure.axes[0].lines
-        if str(line.get_label()).startswith(name)
-    ]
-
-
 def test_legend_names_what_is_there_only() -> None:
     """Where it turns only no sliding joint is named; where it slides and turns, both are."""
     assert legend(arch_figure([least(90, math.inf)])) == {
@@ -88,25 +80,3 @@ def test_legend_names_what_is_there_only() -> None:
     }  # fmt: skip
     assert any(text.get_text() == "0.5 r" for text in falls.axes[0].texts)
     assert any("continuous arch" in text.get_text() for text in falls.axes[0].texts)
-
-
-def test_line_of_thrust_runs_from_springing_to_springing_within_the_arch() -> None:
-    picture = least(90, 0.35)
-    (line,) = lines(arch_figure([picture]), "line of thrust")
-    ends = np.arctan2(line[:, 0], line[:, 1])[[0, -1]]
-    assert ends == pytest.approx([-math.pi / 2, math.pi / 2], abs=1e-9)
-    off = np.abs(np.hypot(*line.T) - 1)
-    assert off.max() == pytest.approx(picture.eta / 2, abs=1e-9)
-
-
-def test_supports_are_where_the_springings_are() -> None:
-    arch = least(115, 0.9)
-    axes = arch_figure([arch]).axes[0]
-    supports = [patch for patch in axes.patches if patch.get_label() == "support"]
-    assert len(supports) == 2
-    for patch in supports:
-        corners = np.asarray(patch.get_path().vertices)
-        angle = np.abs(np.arctan2(corners[:, 0], corners[:, 1]))
-        assert angle.min() == pytest.approx(arch.half_angle, abs=1e-9)
-        assert np.hypot(*corners.T).min() < 1 - arch.eta / 2
-        assert np.hypot(*corners.T).max() > 1 + arch.eta / 2

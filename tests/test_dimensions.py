@@ -92,21 +92,6 @@ def test_words_give_both_forms() -> None:
     assert "span 1.8 r, rise 0.9 r (intrados), thickness 0.2 r, friction angle 45 deg" in said
 
 
-def test_both_forms_are_one_question() -> None:
-    radius = 25 / 6 + 0.225
-    others = ("--mu", repr(math.tan(math.radians(35))), "--voussoirs", "31")
-    ratios = ("--alpha", repr(math.degrees(ALPHA)), "--eta", repr(0.45 / radius))
-    one = json.loads(inside("check", *ASKED, "--json").stdout)
-    two = json.loads(inside("check", *ratios, *others, "--weight", "sector", "--json").stdout)
-    assert one["verdict"] == two["verdict"]
-    one, two = one["arch"], two["arch"]
-    for key in ("eta_limit", "eta_theory"):
-        assert one[key] == pytest.approx(two[key], rel=1e-12)
-    assert one["mode_limit"] == two["mode_limit"]
-    told = json.loads(inside("check", *ASKED, "--weight", "centreline", "--json").stdout)
-    assert told["arch"]["weight"] == "centreline"
-
-
 def test_a_bracket_answers_in_metres() -> None:
     told = json.loads(inside("bracket", *ASKED, "--json").stdout)
     arch = told["arch"]

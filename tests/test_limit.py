@@ -9,14 +9,13 @@ the closed form is exact where the hinges fall on joints and of second order oth
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from own_balance import violation
-from scipy.optimize import brentq, linprog
+from scipy.optimize import brentq
 
 from blocksim import Arch, Mode
 from blocksim.arch import limit, theory
@@ -103,52 +102,6 @@ def test_stands_agrees_with_the_least_thickness(
     assert all(stands(eta) for eta in np.linspace(found.eta * (1 + 1e-9), 2, 20)[:-1])
 
 
-def rotational(alpha: float) -> tuple[float, float]:
-    return alpha, 3.0
-
-
-def shoulder_slides(mu: float) -> tuple[float, float]:
-    return math.pi / 2, mu
-
-
-@pytest.mark.parametrize("weight", ["centreline", "sector"])
-@pytest.mark.parametrize(
-    ("family", "low", "high", "mode", "share", "step"),
-    [
-        (rotational, math.radians(60), math.radians(110), Mode.RRR, 3 / 5, 10),
-        (rotational, math.radians(110), math.radians(135), Mode.RRR, 1 / 2, 8),
-        (shoulder_slides, 0.314, 0.392, Mode.SRR, 2 / 3, 12),
-    ],
-)
-def test_exact_where_the_hinges_fall_on_joints(
-    family: Callable[[float], tuple[float, float]],
-    low: float,
-    high: float,
-    mode: Mode,
-    share: float,
-    step: int,
-    weight: str,
-) -> None:
-    """The joints of the mechanism are all that matters: no discretisation error is left."""
-
-    def off_joint(parameter: float) -> float:
-        alpha, mu = family(parameter)
-        return theory.least_thickness(alpha, mu, weight).beta_r / alpha - share
-
-    alpha, mu = family(brentq(off_joint, low, high, xtol=1e-15))
-    continuous = theory.least_thickness(alpha, mu, weight)
-    assert continuous.modes == (mode,)
-    for count in (step, 3 * step, 6 * step):
-        built = limit.least_thickness(alpha, mu, count, weight)
-        assert built.eta == pytest.approx(continuous.eta, rel=1e-12)
-        assert built.mode is mode
-        assert built.thrust == pytest.approx(continuous.thrust, rel=1e-10)
-        assert built.hinges_intrados == pytest.approx((continuous.beta_r,), rel=1e-12)
-    # Both sides: one voussoir pair more puts the hinge between joints, and it shows.
-    off = limit.least_thickness(alpha, mu, step + 2, weight)
-    assert off.eta < continuous.eta * (1 - 1e-6)
-
-
 @settings(max_examples=15)
 @given(st.floats(0.1, 1.8), st.integers(20, 120), weights, st.floats(0.01, 0.1), st.booleans())
 def test_no_wrong_none(mu: float, count: int, weight: str, aside: float, stands: bool) -> None:
@@ -181,19 +134,6 @@ def test_sliding_threshold_where_the_inner_joint_falls_on_a_joint() -> None:
     failed = limit.least_thickness(alpha, mu * (1 - 1e-9), 16)
     assert (failed.eta, failed.mode) == (None, Mode.SS)
     assert failed.slides == pytest.approx((alpha / 4, alpha), rel=1e-12)
-
-
-@pytest.mark.parametrize("weight", ["centreline", "sector"])
-def test_three_voussoirs_stand_at_any_thickness(weight: str) -> None:
-    """Two joints on each half: a thrust and a moment always lead the line through both.
-
-    Four voussoirs have a joint at the crown, too, and need a thickness.
-    """
-    assert limit.least_thickness(1.5, math.inf, 3, weight).eta == 0
-    assert limit.slack(Arch(half_angle=1.5, eta=1e-6, voussoirs=3, weight=weight), 1.0) >= 0
-    assert limit.least_thickness(1.5, math.inf, 4, weight).eta > 0.01
-    # Friction still has its say.
-    assert limit.least_thickness(1.5, 0.1, 3, weight).eta is None
 
 
 def test_overhanging_arch_that_never_stands() -> None:
@@ -230,29 +170,6 @@ def test_same_answers_beside_the_limit() -> None:
         beside = np.array([eta, np.nextafter(eta, 0), eta * (1 + 1e-12), eta * (1 - 1e-12)])
         found = which_stand(half_angle, beside, mu, 27)
         assert found.tolist() == [True, False, True, False]
-
-
-def test_static_theorem_by_linear_programming() -> None:
-    """The half-planes in (h, m), given to HiGHS: no shared code."""
-    random = np.random.default_rng(5)
-    half_angle, eta = random.uniform(0.5, 2.7, 60), 2 * random.uniform(0.05, 1, 60) ** 2
-    mu = np.tan(random.uniform(0.2, 1.4, 60))
-    found = which_stand(half_angle, eta, mu, 12)
-    for a, e, m, stood in zip(half_angle, eta, mu, found, strict=True):
-        x = a * np.arange(7) / 6
-        sine, cosine, one = np.sin(x), np.cos(x), np.ones(7)
-        # columns h, m; M, N and T of the module docstring of `statics`
-        moment, moment_0 = np.column_stack([-cosine, one]), 1 - cosine - x * sine
-        force, force_0 = np.column_stack([cosine, 0 * one]), x * sine
-        shear, shear_0 = np.column_stack([sine, 0 * one]), -x * cosine
-        rows, right = [], []
-        for sign in (1, -1):
-            rows += [sign * moment - e / 2 * force, sign * shear - m * force]
-            right += [e / 2 * force_0 - sign * moment_0, m * force_0 - sign * shear_0]
-        result = linprog(
-            [0, 0], A_ub=np.vstack(rows), b_ub=np.concatenate(right), bounds=(None, None)
-        )
-        assert stood == (result.status == 0)
 
 
 @pytest.mark.parametrize("mu", [0.35, 0.7, math.inf])

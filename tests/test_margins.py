@@ -52,17 +52,6 @@ def test_a_block_on_a_slope_needs_what_its_weight_asks_for(
     assert found.strength == pytest.approx(max(slip, tip), rel=1e-8)
 
 
-def test_what_falls_needs_more_than_it_has() -> None:
-    """A block that slides at 30 deg with mu = 0.5 needs tan 30 / 0.5; no friction holds one
-    that tips, and no width one that slides."""
-    sliding = margins(slope(4.0, 1.0, 30.0, 0.5))
-    assert sliding.friction == pytest.approx(math.tan(math.pi / 6) / 0.5, rel=1e-8)
-    assert sliding.width is None
-    tipping = margins(slope(1.0, 4.0, 30.0, 2.0))
-    assert tipping.friction is None
-    assert tipping.width == pytest.approx(4 * math.tan(math.pi / 6), rel=1e-8)
-
-
 def test_unbounded_friction_is_told_as_the_coefficient_it_takes() -> None:
     assert margins(slope(4.0, 1.0, 20.0, "inf")).friction == pytest.approx(
         math.tan(math.radians(20)), rel=1e-8

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import json
 import math
 import re
@@ -389,28 +388,6 @@ def _count(text: str, count: int) -> str:
     return f"{head}\n 90\n{count}\n{tail}"
 
 
-def _twisted() -> dict:
-    """Turn one face of one block out of its plane."""
-    table = compas_of([GROUND, SQUARE], [0])
-    table["data"]["graph"]["data"]["node"]["1"]["block"]["data"]["vertex"]["2"]["x"] += 0.2
-    return table
-
-
-def _broken_node(**changes: object) -> dict:
-    table = copy.deepcopy(compas_of([GROUND, SQUARE], [0]))
-    table["data"]["graph"]["data"]["node"]["1"]["block"]["data"] |= changes
-    return table
-
-
-BOMB = (
-    '<!DOCTYPE svg [<!ENTITY a "aaaaaaaaaa">'
-    + "".join(
-        f'<!ENTITY {b} "{f"&{a};" * 10}">' for a, b in zip("abcdefgh", "bcdefghi", strict=True)
-    )
-    + "]>"
-    + svg_of('<g id="blocks"><text>&i;</text></g>')
-)
-FETCH = '<!DOCTYPE svg [<!ENTITY x SYSTEM "file:///etc/passwd">]>' + svg_of("<text>&x;</text>")
 RECT = '<rect width="1" height="1"/>'
 UNITS = "$INSUNITS\n 70\n6"
 BROKEN = {
@@ -440,35 +417,8 @@ BROKEN = {
     "two.dxf": (lambda path: _dxf(path, [(0, 0), (1, 0), (0, 0)]), "at least three"),
     "floating.dxf": (lambda path: _dxf(path, [(0, 3), (1, 3), (1, 4)]), "held by nothing"),
     "miles.dxf": (lambda path: _dxf(path, SQUARE).replace(UNITS, UNITS[:-1] + "3"), "INSUNITS"),
-    # SVG
-    "rubbish.svg": (lambda _: bytes(range(256)) * 40, "valid SVG"),
-    "empty.svg": (lambda _: b"", "valid SVG"),
-    "truncated.svg": (lambda _: svg_of(f'<g id="blocks">{RECT}</g>')[:-9], "valid SVG"),
-    "page.svg": (lambda _: "<html><body/></html>", "a html element"),
-    "bomb.svg": (lambda _: BOMB, "entity = 'a'"),
-    "fetch.svg": (lambda _: FETCH, "entity = 'x'"),
+    # Of SVG and of assemblies of compas others are rows of refused.json.
     "deep.svg": (lambda _: svg_of("<g>" * 10_000 + RECT + "</g>" * 10_000), "at most 256 deep"),
-    "nan.svg": (lambda _: svg_of('<polygon class="blocks" points="0,0 1,0 nan,1"/>'),
-                "numbers"),
-    "huge.svg": (lambda _: svg_of('<polygon class="blocks" points="0,0 1e999,0 1,1"/>'
-                                  f'<g id="supports">{RECT}</g>'), "within 1e+09 m"),
-    "odd.svg": (lambda _: svg_of('<polygon class="blocks" points="0,0 1,0 1"/>'), "pairs"),
-    "transform.svg": (lambda _: svg_of(f'<g transform="spin(4)">{RECT}</g>'), "SVG 1.1"),
-    "curved.svg": (lambda _: svg_of('<path class="blocks" d="M0 0C1 2 2 -2 3 0z"/>'),
-                   "turns both ways"),
-    "path.svg": (lambda _: svg_of('<path class="blocks" d="M0 0 L1 x z"/>'), "a number"),
-    "nothing.svg": (lambda _: svg_of(RECT), "1 rect"),
-    "percent.svg": (lambda _: svg_of('<rect class="blocks" width="50%" height="1"/>'),
-                    "width = '50%'"),
-    # Assemblies of compas
-    "twisted.json": (lambda _: _twisted(), "dented by"),
-    "faceless.json": (lambda _: _broken_node(face={}), "with faces"),
-    "cornerless.json": (lambda _: _broken_node(vertex={}), "assembly of compas_assembly"),
-    "lost.json": (lambda _: _broken_node(face={"0": [0, 1, 99]}), "compas_assembly"),
-    "nan.json": (lambda _: _broken_node(vertex={str(k): {"x": float("nan"), "y": 0, "z": 0}
-                                                for k in range(8)}), "within 1e+09 m"),
-    "graph.json": (lambda _: {"dtype": "compas.datastructures/Graph", "data": {}}, "assembly"),
-    "mesh.json": (lambda _: {"dtype": "compas.datastructures/Mesh", "data": []}, "assembly"),
 }  # fmt: skip
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from dataclasses import replace
@@ -173,13 +172,6 @@ def test_a_block_of_another_weight_or_joint_of_another_friction_is_no_mirror_ima
     )
 
 
-def test_what_cannot_be_reduced_in_space_is_refused_by_name() -> None:
-    done = inside("check", "dome", "--mu", "0.7", "--method", "direct", "--reduce")
-    assert done.returncode == 2
-    assert "--reduce" in done.stderr
-    assert "limit in space" in done.stderr
-
-
 @pytest.mark.parametrize("falling", FALLING)
 def test_a_mechanism_opens_no_joint_less_than_its_slip_asks(falling: str) -> None:
     """And gravity gains work in it: summed again from the rates of the blocks."""
@@ -215,28 +207,6 @@ def test_a_load_factor_lies_between_those_of_two_pyramids(seed: int, mu: float) 
     assert factor <= high + 1e-7 * abs(high) + 1e-9
 
 
-@settings(max_examples=15, deadline=None)
-@given(seed=st.integers(0, 10**6), scale=st.sampled_from([1e-3, 1.0, 50.0]))
-def test_a_verdict_does_not_change_as_blocks_are_turned_scaled_mirrored_renumbered(
-    seed: int, scale: float
-) -> None:
-    """With gravity turned alike."""
-    solids = tower(seed)
-    problem = problem_of(solids)
-    turn = rotation(seed + 1) @ np.diag([-1, 1, 1])
-    order: list[int] = np.random.default_rng(seed).permutation(len(solids)).tolist()
-    moved = [
-        Solid(parts=(scale * np.array(solids[at].parts[0]) @ turn.T + 3.0,),
-              fixed=solids[at].fixed, name=solids[at].name)
-        for at in order
-    ]  # fmt: skip
-    other = problem_of(moved, gravity=turn @ np.array([0.0, 0.0, -1.0]))
-    one, two = can_rest(problem), can_rest(other)
-    assert len(problem.assembly.joints) == len(other.assembly.joints)
-    assert one.exists is two.exists
-    assert one.margin == pytest.approx(two.margin, rel=1e-5, abs=1e-7)
-
-
 def rebuilt(problem: Problem[Any], turn: Any, scale: float, order: list[int]) -> Problem[Any]:
     """Return a problem turned, scaled and renumbered, its joints found anew."""
     assembly = problem.assembly
@@ -259,7 +229,7 @@ def rebuilt(problem: Problem[Any], turn: Any, scale: float, order: list[int]) ->
 
 @settings(max_examples=8, deadline=None)
 @given(seed=st.integers(0, 10**6), scale=st.sampled_from([1e-2, 1.0, 4.0]))
-def test_a_load_factor_does_not_change_as_blocks_are_turned_scaled_mirrored_renumbered(
+def test_no_answer_changes_as_blocks_are_turned_scaled_mirrored_renumbered(
     seed: int, scale: float
 ) -> None:
     """Of solids cut by planes, stacks that lean and vaults, friction from 0 to no bound."""
@@ -270,6 +240,9 @@ def test_a_load_factor_does_not_change_as_blocks_are_turned_scaled_mirrored_renu
     one = rebuilt(problem, np.eye(3), 1.0, list(range(count)))
     two = rebuilt(problem, turn, scale, order)
     assert len(one.assembly.joints) == len(two.assembly.joints)
+    rests = [can_rest(each) for each in (one, two)]
+    assert rests[0].exists is rests[1].exists
+    assert rests[0].margin == pytest.approx(rests[1].margin, rel=1e-5, abs=1e-7)
     first, second = (largest_load(each).load_factor for each in (one, two))
     assert (first is None) is (second is None)
     if first is not None:
@@ -366,24 +339,6 @@ def test_a_survey_with_few_decimals_has_the_same_joints(decimals: int) -> None:
     assert factor == pytest.approx(
         known["expected"]["value"], rel=max(200 * 10.0**-decimals, 1e-7)
     )
-
-
-def test_commands_answer_in_space_with_the_keys_of_the_plane(tmp_path: Path) -> None:
-    """Both verbs, in words and as JSON."""
-    known = case("wall_6_4_0_0_1_0")
-    file = tmp_path / "wall.json"
-    file.write_text(json.dumps(known["scene"]), encoding="utf-8")
-    told: dict[str, dict[str, Any]] = {}
-    for verb, *rest in (("check",), ("bracket", "--over", "load")):
-        done = inside(verb, str(file), *rest, "--json")
-        assert done.returncode == 0, done.stderr
-        told[verb] = json.loads(done.stdout)
-    plane = json.loads(inside("check", "wall", "--mu", "0.7", "--json").stdout)
-    words = inside("check", str(file), "--load", "0.3").stdout
-    assert set(told["check"]) == set(plane)
-    assert set(told["check"]["problem"]) == set(plane["problem"])
-    assert told["bracket"]["limit"] == pytest.approx(known["expected"]["value"], rel=1e-6)
-    assert words.startswith("COLLAPSES  (limit")
 
 
 @pytest.mark.parametrize(

@@ -531,11 +531,3 @@ def test_what_is_pushed_falls_where_it_falls_first(over: str) -> None:
     for side, code in ((stands, 0), (-stands, 1)):
         value = repr(found["limit"] * (1 + 1e-4 * side))
         assert inside("check", *asked, *mu, f"--{over}", value).returncode == code
-
-
-def test_a_push_that_is_sought_is_not_given() -> None:
-    done = inside("bracket", "column", "--mu", "0.6", "--push", "0.1", "--over", "push")
-    assert (done.returncode, done.stderr) == (
-        2,
-        "blocksim: --push = 0.1: must be left out: it is sought\n",
-    )

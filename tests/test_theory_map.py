@@ -194,26 +194,6 @@ def test_limits(weight: str) -> None:
     assert (found.modes[3:6, -1] & (BIT[Mode.RRR] | BIT[Mode.R]) > 0).all()
 
 
-@given(half_angle=st.floats(0.05, 2.78))
-@settings(max_examples=12, deadline=None)
-def test_mode_changes_on_lines_only(half_angle: float) -> None:
-    """Between two modes along mu, both are reported at the change itself."""
-    mu = np.tan(np.linspace(0.02, 1.57, 500))
-    found = least_thicknesses(half_angle, mu)
-    for i in np.flatnonzero(np.diff(found.modes)):
-        low, high = float(mu[i]), float(mu[i + 1])
-        before, after = found.modes[i], found.modes[i + 1]
-        while (low + high) / 2 not in (low, high):
-            middle = (low + high) / 2
-            if least_thicknesses(half_angle, middle).modes == before:
-                low = middle
-            else:
-                high = middle
-        at = least_thicknesses(half_angle, np.array([low, high])).modes
-        beside = least_thicknesses(half_angle, np.array([low - 1e-9, high + 1e-9])).modes
-        assert (at[1] & before) or (beside[1] == after) or at[0] & at[1]
-
-
 @pytest.mark.parametrize(
     ("field", "values"),
     [

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from arches import least
-from matplotlib.colors import to_rgba
 from running import inside as blocksim
 from scipy.optimize import brentq
 
@@ -81,49 +80,6 @@ def test_kept_bands_end_where_the_closed_form_says_or_before() -> None:
             else:
                 before += 1
     assert (there, before) == (27, 6)
-
-
-def test_the_map_has_bands_lines_and_marks() -> None:
-    drawn = import_module("analysis.two_answers_map")
-
-    def row(
-        n: int, alpha: float, mu: float, end: float | None, weight: str
-    ) -> dict[str, object]:
-        return {"voussoirs": n, "weight": weight, "alpha_deg": alpha, "mu": mu,
-                "eta_limit": 1.0, "eta_moves": end}  # fmt: skip
-
-    asked = [row(7, 155.0, mu, 1.4 if mu > 2 else None, "centreline") for mu in (3.0, 2.0, 5.0)]
-    asked += [row(15, 155.0, 6.0, 1.2, "centreline"), row(27, 151.0, 10.0, 1.1, "centreline")]
-    asked += [row(8, 155.0, 3.0, None, "centreline"), row(7, 90.0, 0.6, None, "centreline")]
-    asked += [row(7, 150.0, mu, 1.5, "sector") for mu in (2.0, 3.0, 5.0)]
-    figure = drawn.draw(asked)
-    left, right = figure.axes
-    phi = [math.degrees(math.atan(mu)) for mu in (2.0, 3.0, 5.0, 6.0, 10.0)]
-    lines = {line.get_label(): line for line in left.lines if "°" in str(line.get_label())}
-    assert set(lines) == {"155° least", "155° end", "15 voussoirs, 155°", "27 voussoirs, 151°",
-                          "8 voussoirs, 155°, none"}  # fmt: skip
-    least, end = lines["155° least"], lines["155° end"]
-    assert least.get_xydata().tolist() == pytest.approx(np.c_[phi[:3], [1.0, 1.0, 1.0]])
-    assert end.get_xydata().tolist() == pytest.approx(np.c_[phi[:3], [1.0, 1.4, 1.4]])
-    assert (least.get_linestyle(), end.get_linestyle()) == ("-", "--")
-    assert least.get_color() == end.get_color() == drawn.colour_of(155.0)
-    assert drawn.colour_of(155.0) != drawn.colour_of(150.0)
-    marks = {label: line.get_marker() for label, line in lines.items() if "vou" in str(label)}
-    assert sorted(marks.values()) == ["D", "s", "x"]
-    fifteen = lines["15 voussoirs, 155°"].get_xydata().tolist()
-    assert fifteen == pytest.approx(np.array([[phi[3], 1.0], [phi[3], 1.2]]))
-    assert {line.get_label() for line in right.lines if "°" in str(line.get_label())} == {
-        "150° least", "150° end"}  # fmt: skip
-    for axes in (left, right):
-        regions = {str(each.get_gid()) for each in axes.collections}
-        assert {"region-rrr", "region-rrs", "region-rs", "region-ss"} <= regions
-        assert {"rrr", "rrs", "rs", "ss"} <= {text.get_text() for text in axes.texts}
-        assert axes.get_xlim() == (drawn.LEFT, 90.0)
-    (band,) = (each for each in left.collections if each.get_gid() is None)
-    assert to_rgba(band.get_facecolor()[0])[:3] == pytest.approx(drawn.colour_of(155.0)[:3])
-    (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == [
-        "150°", "155°", "15 voussoirs", "27 voussoirs", "7, single", "no band"]  # fmt: skip
 
 
 def test_the_kept_map_draws_every_wide_arch() -> None:

@@ -76,19 +76,6 @@ def test_of_writers_of_one_file_one_wins(tmp_path: Path) -> None:
     race(tmp_path, 10, 8)
 
 
-@pytest.mark.long
-def test_two_commands_leave_one_whole_file(tmp_path: Path) -> None:
-    words = ["map", "--out", str(tmp_path / "map.html")]
-    for _ in range(5):
-        both = [
-            subprocess.Popen([sys.executable, "-m", "blocksim", *words], stdout=-1)
-            for _ in range(2)
-        ]
-        assert [(each.communicate(), each.returncode)[1] for each in both] == [0, 0]
-        assert (tmp_path / "map.html").read_text().rstrip().endswith("</html>")
-    assert [each.name for each in tmp_path.iterdir()] == ["map.html"]
-
-
 # Names.
 
 
@@ -259,22 +246,9 @@ def writers(tmp_path_factory: pytest.TempPathFactory) -> Writers:
 
 
 KINDS = (
-    *(
-        "npz",
-        "mp4",
-        "gif",
-        "glb",
-        "gltf",
-        "csv",
-        "sheet.csv",
-        "dxf",
-        "svg",
-        "png",
-        "pdf",
-        "html",
-    ),
-    *("poses.json", "space.npz", "space.glb", "proof.json", "rows.csv", "rows.parquet"),
-    "in a folder",
+    *("npz", "mp4", "gif", "glb", "gltf", "csv", "sheet.csv", "dxf", "svg", "png", "pdf"),
+    *("html", "poses.json", "space.npz", "space.glb", "proof.json", "rows.csv"),
+    *("rows.parquet", "in a folder"),
 )
 OWN = {
     "common/files.py": "the writer",

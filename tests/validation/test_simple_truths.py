@@ -14,8 +14,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from own_balance import violation
-from scipy.optimize import brentq
 from worlds import get_engine, observe
 
 from blocksim import Assembly, Block, Joint, Problem, Verdict
@@ -187,13 +185,7 @@ def test_a_wedge_drives_two_blocks_apart(engine: str, degrees: float, width: flo
     share_of_wedge = key / 2 / (key / 2 + block)
     both = math.tan(math.radians(degrees)) * (1 + share_of_wedge)
     critical = (math.sqrt(both**2 + 4 * share_of_wedge) - both) / 2
-    assert least_friction(assembly) == pytest.approx(critical, rel=1e-6)
     holds_both_sides(lambda share: settles(engine, assembly, critical / share))
-
-
-def least_friction(assembly: Assembly) -> float:
-    """Smallest friction with which some contact forces are in equilibrium, by statics."""
-    return float(brentq(lambda mu: violation(assembly, mu), 1e-6, 3.0, xtol=1e-10))
 
 
 def flat_arch(half_angle: float, half_span: float, depth: float, count: int) -> Assembly:
@@ -246,7 +238,6 @@ def test_a_flat_arch_slides_out_of_its_springings(
     centroid = (below**2 + below * above + above**2) / (3 * (below + above))
     critical = math.tan(gamma - math.atan(depth / (below - centroid)))
     assembly = flat_arch(gamma, 1.0, depth, count)
-    assert least_friction(assembly) == pytest.approx(critical, rel=1e-6)
     holds_both_sides(lambda share: settles(engine, assembly, critical / share))
 
 
