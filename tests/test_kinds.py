@@ -475,10 +475,7 @@ def test_an_arch_between_springings_is_known_as_well_as_one_by_its_half_angle(
 
 OWN_KIND = """\
 from dataclasses import dataclass
-from blocksim import Maker
-from blocksim.blocks.given import Body
-from blocksim.blocks.made import Made
-from blocksim.blocks.maker import metres
+from blocksim import Body, Made, Maker, metres
 
 @dataclass(frozen=True, kw_only=True)
 class Cube(Maker):

@@ -224,32 +224,19 @@ def test_titles_say_what_it_is_and_nothing_of_arches() -> None:
 
 
 def test_hinges_at_either_end_are_one_thing() -> None:
-    """The drums of a column turn to and fro: one word, one colour."""
-    problem = structure_of(scenes("column_six_drums")[0])
-    joints = problem.assembly.joints
-    size = problem.assembly.size
-    moved = np.zeros((6, 3))
-    angle, hinge = 0.0, np.zeros(2)
-    for drum, way in enumerate((0.05, -0.05, 0.05, 0, 0, 0)):
-        # Each drum turns about one of the ends of the joint below it, carried along.
-        joint = joints[drum]
-        ends = sorted([joint.inner, joint.outer], key=lambda end: float(end[0]))
-        about = (ends[0] if way > 0 else ends[1]) / size
-        old = problem.assembly.built[:-1][drum - 1, :2] if drum else about
-        cos, sin = math.cos(angle), math.sin(angle)
-        hinge = (
-            (hinge if drum else about)
-            if drum == 0
-            else (
-                old + moved[drum - 1, :2] + np.array([[cos, -sin], [sin, cos]]) @ (about - old)
-            )
-        )
-        angle += way
-        cos, sin = math.cos(angle), math.sin(angle)
-        place = hinge + np.array([[cos, -sin], [sin, cos]]) @ (
-            problem.assembly.built[:-1][drum, :2] - about
-        )
-        moved[drum] = [*(place - problem.assembly.built[:-1][drum, :2]), angle]
+    """One box turns about its right corner, one about its left: one word, one colour."""
+    blocks = [
+        {"id": "slab", "vertices": square(-5, -1, 20, 1), "fixed": True},
+        {"id": "one", "vertices": square(0, 0)},
+        {"id": "two", "vertices": square(2, 0)},
+    ]
+    problem = structure_of({"friction": 0.6, "blocks": blocks})
+    moved = np.zeros((2, 3))
+    for box, (corner, turn) in enumerate(((1.0, -0.05), (2.0, 0.05))):
+        arm = problem.assembly.centres[box] - [corner, 0.0]
+        cos, sin = math.cos(turn), math.sin(turn)
+        way = np.array([[cos, -sin], [sin, cos]]) @ arm - arm
+        moved[box] = [*(way / problem.assembly.size), turn]
     run = recording(problem, np.linspace(0, 1, 11)[:, None, None] * moved)
     stage = Stage(run)
     assert {JointState.HINGE_INTRADOS, JointState.HINGE_EXTRADOS} <= set(stage.states)
