@@ -41,8 +41,7 @@ from blocksim.cli.options import (
     settings_of,
 )
 from blocksim.cli.output import picture_kind, progress, say
-from blocksim.cli.question import arch_of
-from blocksim.cli.subject import anything_asked
+from blocksim.cli.subject import anything_asked, arch_of
 from blocksim.common.checks import Range, require
 from blocksim.common.files import require_place
 from blocksim.engines import NAMES

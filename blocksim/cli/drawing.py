@@ -13,8 +13,7 @@ from blocksim.cli.acting import Loading
 from blocksim.cli.built import Given
 from blocksim.cli.options import named_options, refuse
 from blocksim.cli.output import progress, save_picture, say
-from blocksim.cli.question import arch_of, is_thick
-from blocksim.cli.subject import anything_asked
+from blocksim.cli.subject import anything_asked, arch_of, is_thick
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import write_whole

@@ -17,7 +17,7 @@ from blocksim.cli.built import Given
 from blocksim.cli.curves import KINDS as CURVES
 from blocksim.cli.options import JSON, METHOD, SCENE, SET, named_options, settings_of
 from blocksim.cli.output import answer_with, picture_kind, progress, write_files
-from blocksim.cli.subject import problem_asked
+from blocksim.cli.subject import anything_asked
 from blocksim.common.checks import Range, require
 from blocksim.common.sheets import write_sheet
 from blocksim.common.words import counted
@@ -54,7 +54,10 @@ def fragility(
     as_json: bool = JSON,
 ) -> None:
     """Find which share of records of the ground brings it down, by their amplitude."""
-    problem = problem_asked(scene, given, loading, record=record, amplitudes=amplitudes)
+    named = {"record": record, "amplitudes": amplitudes}
+    problem = anything_asked(scene, given, loading, thick=True, **named)
+    allowed = "x and y: in space there are check, bracket, simulate, render and report"
+    require(not problem.in_space, "blocks", "three coordinates", allowed)
     for path in out or ():
         picture_kind(path, CURVES)
     names = [str(path) for path in record or ()]

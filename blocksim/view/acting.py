@@ -15,16 +15,14 @@ from blocksim.blocks.shaking import Shaking
 from blocksim.blocks.space.extruded import UP
 from blocksim.view.arrows import forces_of, is_push
 from blocksim.view.canvas import Label, Panel, Shape, arrow, colour, mixed, width_of
-from blocksim.view.following import View
-from blocksim.view.placing import UPRIGHT
+from blocksim.view.following import View, direction
 from blocksim.view.solidstage import SolidStage
 from blocksim.view.stage import Stage
 from blocksim.view.style import DEAD, GROUND, INK, LIVE, PAPER, QUIET
+from blocksim.view.timeline import UPRIGHT
 
 LONGEST = 0.15
 """Share of a panel's height that the largest load is long."""
-AHEAD = 0.01
-"""Way along a force by which its direction in the picture is found [size]."""
 FEW, SHORT = 8, 0.4
 """Loads from which on arrows are shorter, and by how much."""
 WIDE, TALL = 190.0, 64.0
@@ -63,8 +61,7 @@ class Acting:
         for kind, block, arm, force in self._loads:
             place = self._stage.point_at(moment, block, arm)
             share = force / self._largest
-            tip, ahead = self._view.places(np.stack([place, place + AHEAD * share]))
-            way = (ahead - tip) / max(float(np.hypot(*(ahead - tip))), 1e-9)
+            tip, way = self._view.places(place), direction(self._view, place, share)
             tail = tip - long * float(np.linalg.norm(share)) * way
             drawn += arrow(tail, tip, colour(LIVE if kind == "live" else DEAD), self._size)
         return drawn
@@ -110,9 +107,7 @@ class Acting:
         for kind, share_of_weight in self._pushes:
             label = self._corner(f"push {np.linalg.norm(share_of_weight):.3g} g")
             labels.append(label)
-            ends = np.stack([0 * share_of_weight, AHEAD * share_of_weight])
-            way = np.diff(self._view.places(ends), axis=0)[0]
-            way *= PUSH * size / max(float(np.hypot(*way)), 1e-9)
+            way = PUSH * size * direction(self._view, np.zeros(3), share_of_weight)
             middle = np.array([label.x - (PUSH / 2 + 14) * size, label.y + 5 * size])
             tone = colour(LIVE if kind == "live" else DEAD)
             shapes += arrow(middle - way / 2, middle + way / 2, tone, size)

@@ -14,19 +14,17 @@ from blocksim.simulation.shaken import outcome
 from blocksim.simulation.verdict import Verdict
 from blocksim.view.canvas import Label, Panel, Shape, arrow, colour, width_of
 from blocksim.view.drawing import friction_words, loading_words
-from blocksim.view.following import View
-from blocksim.view.placing import UPRIGHT
+from blocksim.view.following import View, direction
 from blocksim.view.sheet import factor_words
 from blocksim.view.solidstage import SolidStage
 from blocksim.view.stage import Stage
 from blocksim.view.style import DASHES, QUIET
+from blocksim.view.timeline import UPRIGHT
 
 CLOCK = 405.0
 """Width of the clock and of what stands beside it, left of the legend [pixels at 720]."""
 LETTER = 13.0
 """Size of the legend's letters [pixels at 720]."""
-AHEAD = 0.01
-"""Way along gravity by which its direction in the picture is found [size]."""
 LENGTH = 6.0
 """How long the motion takes in a film whose slowness is not given, about [s]."""
 SLOW = (1, 2, 3, 4, 5, 6, 8)
@@ -39,16 +37,9 @@ def gravity_arrow(
     """Show where a view sees gravity pull, in a corner, unless that is straight down."""
     problem = stage.recording.problem
     pull = UPRIGHT @ problem.gravity if problem.in_space else problem.gravity
-    down = np.array([0.0, -1.0, 0.0])
-    ends = np.stack([0 * pull, down, pull / np.linalg.norm(pull)])
-    start, *seen = view.places(AHEAD * ends)
-    ways = np.array(seen) - start
-    lengths = np.hypot(*ways.T)
-    if not lengths.min() > 0:
-        # Blocks are so far apart that none has a width.
-        return [], []
-    straight, way = ways / lengths[:, None]
-    if np.allclose(straight, way, atol=1e-9, rtol=0):
+    straight = direction(view, np.zeros(3), np.array([0.0, -1.0, 0.0]))
+    way = direction(view, np.zeros(3), pull / np.linalg.norm(pull))
+    if not way.any() or np.allclose(straight, way, atol=1e-9, rtol=0):
         return [], []
     middle = np.array([panel.x + panel.width - 64 * size, panel.y + panel.height - 36 * size])
     half = 30 * size * way

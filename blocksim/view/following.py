@@ -14,6 +14,8 @@ EASED = 0.5
 """How long before a block would leave the camera begins to draw back [s of film]."""
 FARTHEST = 1 / 12
 """Least share of its size at the release that anything is drawn with."""
+AHEAD = 0.01
+"""Way along a vector by which its direction in the picture is found [size]."""
 MARGIN = 0.03
 """Share of a panel on each side that blocks keep off."""
 
@@ -42,6 +44,13 @@ class View(Protocol):
     def centre(self) -> Array:
         """The place that stays as the camera draws back [pixels]."""
         ...
+
+
+def direction(view: View, place: Array, vector: Array) -> Array:
+    """Return the direction in which a vector at a place is seen, (2,); 0 where it has none."""
+    start, end = view.places(np.stack([place, place + AHEAD * vector]))
+    long = float(np.hypot(*(end - start)))
+    return (end - start) / long if long > 0 else np.zeros(2)
 
 
 def needed(places: Array, panel: Panel, centre: Array) -> float:

@@ -25,10 +25,10 @@ from blocksim.common.words import printable
 from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import colour
 from blocksim.view.gltf import Document, Ring, Solid, mesh_of
-from blocksim.view.placing import UPRIGHT
 from blocksim.view.solidscene import WAY, Marks, marks_of, moving_box, supports_of
 from blocksim.view.stage import Stage
 from blocksim.view.style import GROUND, PAPER
+from blocksim.view.timeline import UPRIGHT
 
 if TYPE_CHECKING:
     from blocksim.ask.check import Check

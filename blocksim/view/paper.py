@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from blocksim.arch.limit.complementary import Complementary, complementary, joints_through
 from blocksim.arch.modes import Mode
+from blocksim.arch.theory.critical import inner_sliding
 from blocksim.common.checks import require
-from blocksim.studies.paper import ARCHES, FIGURES
+from blocksim.studies.paper import ARCHES, FIGURES, PaperArch, paper_arches
+from blocksim.view.archfigure import ArchPicture, arch_figure, picture_of_theory
 from blocksim.view.drawing import new_figure
 from blocksim.view.linemap import line_map_figure
 from blocksim.view.mapregions import (
@@ -22,13 +27,14 @@ from blocksim.view.mapregions import (
     draw_regions,
     draw_unbounded,
 )
-from blocksim.view.paperarches import paper_arch_figure
 from blocksim.view.papercurves import curve_figure
 from blocksim.view.papersketches import sketch_figure
 from blocksim.view.style import FONT, MODES
 
 SKETCHES = (1, 2, 12)
 CURVES = (3, 4, 5)
+VOUSSOIRS = 30
+"""Number of voussoirs in the complementary problems, about."""
 SPANS = {6: (0.0, 2.0), 7: (0.0, 1.0), 8: (0.6, 2.0)}
 """Thickness ratios of the map's three pictures as lines."""
 
@@ -71,7 +77,7 @@ def paper_figure(number: int) -> Figure:
         elif number in SPANS:
             figure = line_map_figure(SPANS[number])
         elif number in ARCHES:
-            figure = paper_arch_figure(number)
+            figure = _arches(number)
         else:
             figure = _filled(number)
         return figure
@@ -120,3 +126,53 @@ def _draw_equations(axes: Axes) -> None:
             arrowprops=leads,
             gid=f"equations {mode}",
         )
+
+
+def _arches(number: int) -> Figure:
+    """Draw one of Figs 13-25: on the left by closed form, on the right eqs (15) and (16)."""
+    pictures: list[ArchPicture] = []
+    for arch in paper_arches()[number]:
+        pictures += [
+            picture_of_theory(arch.critical, arch.mode, arch.half_angle, arch.mu),
+            picture_of_voussoirs(arch),
+        ]
+    return arch_figure(pictures, columns=2)
+
+
+def complementary_of(arch: PaperArch) -> Complementary:
+    """Solve eqs (15) and (16) on joints where the continuous arch turns and slides."""
+    if arch.critical.eta is None:
+        message = f"no thickness stands at a half-angle of {arch.half_angle}"
+        raise ValueError(message)
+    # Where modes coincide theory names the inner sliding joint of one that has it.
+    places = [arch.critical.beta_r or 0.0]
+    if math.isfinite(arch.mu):
+        places.append(inner_sliding(arch.mu)[1])
+    angles = joints_through(arch.half_angle, places, VOUSSOIRS)
+    return complementary(angles, arch.critical.eta, arch.mu)
+
+
+def picture_of_voussoirs(arch: PaperArch) -> ArchPicture:
+    """Picture of voussoirs at the least thickness, moving as the complementary problem says."""
+    found = complementary_of(arch)
+    ways = [each for each in found.modes if each.mode is arch.mode]
+    if not ways or arch.critical.eta is None:
+        message = f"no mechanism {arch.mode} on these voussoirs"
+        raise ValueError(message)
+    way = ways[0]
+    others = [str(each.mode) for each in found.modes if each is not way]
+    besides = f"; besides: {', '.join(others)}" if others else ""
+    return ArchPicture(
+        title=f"[{arch.mode.value}] of {2 * len(found.angles) - 2} voussoirs, "
+        f"eqs (15) and (16){besides}",
+        subtitle=f"at the same thickness, joints where they turn and slide; strength it lacks "
+        f"{found.extra_strength:.0e}, eq. (16) {way.product:.0e}",
+        half_angle=arch.half_angle,
+        eta=arch.critical.eta,
+        mu=arch.mu,
+        weight="centreline",
+        thrust=found.thrust,
+        crown_moment=found.crown_moment,
+        joints=np.concatenate([-found.angles[:0:-1], found.angles]),
+        collapse=way.collapse,
+    )

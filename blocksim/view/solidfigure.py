@@ -12,11 +12,11 @@ from blocksim.engines.base import Quality, Settings
 from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import Canvas, Label, Panel, Shape, colour
 from blocksim.view.captions import gravity_arrow, legend_of, title
-from blocksim.view.placing import UPRIGHT
 from blocksim.view.solidscene import WAY, force_lines, told
 from blocksim.view.solidstage import SolidStage
 from blocksim.view.spatial import SpatialView
 from blocksim.view.style import QUIET, THRUST
+from blocksim.view.timeline import UPRIGHT
 
 if TYPE_CHECKING:
     from blocksim.ask.check import Check

@@ -17,9 +17,8 @@ from blocksim.limit.space.statics import state_of
 from blocksim.view.camera import Face, Line, Piece
 from blocksim.view.canvas import Colour, colour, mixed, stone_tones
 from blocksim.view.drawing import state_of_any, words_of
-from blocksim.view.placing import UPRIGHT
 from blocksim.view.style import GROUND, INK, PAPER
-from blocksim.view.timeline import SEEN
+from blocksim.view.timeline import SEEN, UPRIGHT
 
 BED = 0.25
 """How far supports are drawn beyond what moves, in units of the size."""

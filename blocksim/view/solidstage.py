@@ -15,9 +15,8 @@ from blocksim.blocks.joints import JointState
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.limit.carried import Carried
 from blocksim.simulation.recording import Recording
-from blocksim.view.placing import UPRIGHT
 from blocksim.view.solidscene import Solids, moving_box, states_at, supports_of
-from blocksim.view.timeline import Moment, Timeline
+from blocksim.view.timeline import UPRIGHT, Moment, Timeline, upright
 
 FARTHEST = 1.75
 """Blocks are followed from the start up to this far beyond where they were at rest [size]."""
@@ -78,12 +77,11 @@ class SolidStage(Timeline):
 
     def at(self, time: float) -> Moment:
         """Return where everything is at a time, between frames by even turns."""
-        time, earlier, later, share = self.between(time)
-        poses = self._frames.poses(earlier, later, share)
-        return self._moment(time, poses, poses)
+        poses = self.poses_at(time)
+        return self._moment(self.between(time)[0], poses, poses)
 
     def corners_at(self, time: float) -> Array:
         """Return the corners of a moment alone, (k, 3)."""
-        turns, places = self._frames.placed(*self.between(time)[1:])
+        turns, places = upright(self.poses_at(time))
         corners = self._corners @ turns[self._owner].swapaxes(1, 2)
         return corners[:, 0] + places[self._owner]

@@ -16,16 +16,15 @@ import numpy as np
 from blocksim.ask.answer import SOUGHT
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
-from blocksim.blocks.space.extruded import prism, prisms
+from blocksim.blocks.space.extruded import lifted, prism, prisms
 from blocksim.engines.ground import ground_level, piers
 from blocksim.kinds.offers import carried_of
 from blocksim.limit.carried import Carried
 from blocksim.simulation.recording import Recording
 from blocksim.view.drawing import clipped, grain_of, rims
-from blocksim.view.placing import Placing
 from blocksim.view.solidscene import Solids
 from blocksim.view.thrustlines import is_chained, near_blocks, thrust_lines
-from blocksim.view.timeline import Moment, SeenJoints, Timeline
+from blocksim.view.timeline import Moment, Placing, SeenJoints, Timeline
 
 TOUCHING = 0.02
 """Height of a corner over the ground below which its block lies on it [r]."""
@@ -71,7 +70,7 @@ class Stage(Timeline):
             tops = [part[:, 1].max() for each in self._fixed for part in each.polygons]
             self.ground, self._fixed = float(max(tops)) / size, ()
         self.footings = self._standing()
-        self._placing = Placing(recording)
+        self._placing = Placing(self.assembly)
         self.owner = self._placing.owner
         self.grain = grain_of(self.assembly) / size
 
@@ -141,10 +140,9 @@ class Stage(Timeline):
         footings = np.concatenate([*self.footings, [[self.middle, self.ground]]])
         half = self.depth / 2
         solid = [np.pad(footings, ((0, 0), (0, 1)), constant_values=z) for z in (-half, half)]
-        rest = np.concatenate([self._placing.corners(0, 0, 0.0).reshape(-1, 3), *solid])
-        moved = np.concatenate([self._placing.corners(i, i, 0.0) for i in self.shown]).reshape(
-            -1, 3
-        )
+        first, *shown = lifted(self.recording.poses[[0, *self.shown]])
+        rest = np.concatenate([self._placing.corners(first).reshape(-1, 3), *solid])
+        moved = np.concatenate([self._placing.corners(each) for each in shown]).reshape(-1, 3)
         low, high = rest.min(axis=0), rest.max(axis=0)
         bounded = np.clip(
             moved,
@@ -168,15 +166,14 @@ class Stage(Timeline):
         """Return where everything is at a time, between frames by interpolation."""
         time, earlier, later, share = self.between(time)
         one, two = self.recording.poses[earlier], self.recording.poses[later]
-        poses = self._frames.poses(earlier, later, share)
+        poses = self.poses_at(time)
         return self._moment(time, poses, one + (two - one) * share)._replace(
-            corners=self._placing.corners(earlier, later, share),
-            faces=self._placing.faces(earlier, later, share),
+            corners=self._placing.corners(poses), faces=self._placing.faces(poses)
         )
 
     def corners_at(self, time: float) -> Array:
         """Return the corners of a moment alone, which cost little."""
-        return self._placing.corners(*self.between(time)[1:])
+        return self._placing.corners(self.poses_at(time))
 
     def joints_at(self, poses: Array, time: float) -> tuple[JointState, ...]:
         """Tell what joints are seen to do at poses, (blocks, 3 or 6), and their time."""

@@ -12,14 +12,17 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
-from blocksim.blocks.assembly import Array
+from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.joints import JointState, classify
 from blocksim.blocks.outlines import distances
+from blocksim.blocks.space.extruded import lifted
 from blocksim.simulation.motion import AT_REST, FRAME, UNMOVED, UNSEEN
 from blocksim.simulation.recording import Recording
-from blocksim.view.placing import UPRIGHT, Frames, Placing, upright
 
+UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+"""Turns what has z upwards so that y is upwards."""
 SAMPLES = 500
 """Most frames that are looked at for what a film needs to know beforehand."""
 ROUNDING = 1e-12
@@ -55,12 +58,34 @@ class Moment(NamedTuple):
     faces: Array = NOWHERE
 
 
+def poses_between(recording: Recording[Any], earlier: int, later: int, share: float) -> Array:
+    """Return poses at a share of the way from one frame to another.
+
+    Returns: Centres x, y, z (upwards) and rotation vectors, (blocks, 6).
+    """
+    poses = recording.poses[[earlier, later]]
+    one, two = poses if recording.problem.in_space else lifted(poses)
+    if not share:
+        return one
+    # Turns between frames are even.
+    first = Rotation.from_rotvec(one[:, 3:])
+    way = (Rotation.from_rotvec(two[:, 3:]) * first.inv()).as_rotvec()
+    turned = Rotation.from_rotvec(share * way) * first
+    places = one[:, :3] + share * (two[:, :3] - one[:, :3])
+    return np.hstack([places, turned.as_rotvec()])
+
+
+def upright(poses: Array) -> tuple[Array, Array]:
+    """Return turns, (blocks, 3, 3), and centres, (blocks, 3), y upwards, of poses."""
+    turns = Rotation.from_rotvec(poses[:, 3:]).as_matrix()
+    return UPRIGHT @ turns @ UPRIGHT.T, poses[:, :3] @ UPRIGHT.T
+
+
 class Timeline(ABC):
     """Times of a recording, and what is known of them."""
 
     def __init__(self, recording: Recording[Any]) -> None:
         self.recording = recording
-        self._frames = Frames(recording)
 
     def _moment(self, time: float, poses: Array, looked: Array) -> Moment:
         """Return what there is of blocks at poses, of which joints are looked at by others."""
@@ -143,10 +168,59 @@ class Timeline(ABC):
         gap = times[later] - times[earlier]
         return time, earlier, later, float((time - times[earlier]) / gap) if gap > 0 else 0.0
 
+    def poses_at(self, time: float) -> Array:
+        """Return poses at a time that is shown, as of `poses_between`."""
+        return poses_between(self.recording, *self.between(time)[1:])
+
     def statics_at(self, time: float) -> float:
         """Return how much forces at rest still say at a time, from 1 falling to 0."""
         moved = float(np.interp(time, self.recording.times, self.displaced))
         return float(np.interp(moved, (STILL, GONE), (1.0, 0.0)))
+
+
+class Placing:
+    """Convex pieces of blocks of the plane, and joints, carried by poses.
+
+    It has:
+    `owner`, (pieces,): The block that each piece belongs to.
+    `outlines`, (pieces, sides, 2): Of the pieces, from the centres of their blocks; what has
+        fewer corners repeats its last one.
+    """
+
+    def __init__(self, assembly: Assembly) -> None:
+        self._assembly = assembly
+        pieces = [
+            (index, (part - block.centre) / assembly.size)
+            for index, block in enumerate(assembly.blocks)
+            for part in block.polygons
+        ]
+        self.owner = np.array([index for index, _ in pieces])
+        sides = max(len(each) for _, each in pieces)
+        self.outlines = np.array(
+            [np.pad(each, ((0, sides - len(each)), (0, 0)), "edge") for _, each in pieces]
+        )
+        self._half = assembly.depths[self.owner] / 2
+
+    def corners(self, poses: Array) -> Array:
+        """Return the corners in space at poses, (pieces, 2, sides, 3)."""
+        turns, centres = upright(poses)
+        half = np.broadcast_to(self._half[:, None, None], (*self.outlines.shape[:2], 1))
+        near = np.concatenate([self.outlines, half], axis=-1)
+        local = np.stack([near, near * [1, 1, -1]], axis=1)
+        owner = self.owner
+        return centres[owner][:, None, None] + local @ turns[owner][:, None].swapaxes(2, 3)
+
+    def faces(self, poses: Array) -> Array:
+        """Return the ends of joints in space, as the blocks on both sides carry them."""
+        assembly = self._assembly
+        turns, centres = upright(poses)
+        # The support comes last, as index -1 says: it stays.
+        centres = np.vstack([centres, np.zeros(3)])
+        turns = np.concatenate([turns, np.eye(3)[None]])
+        sides = assembly.sides.T
+        local = np.zeros((*sides.shape, 2, 3))
+        local[..., :2] = assembly.joint_arms.swapaxes(0, 1)
+        return centres[sides][:, :, None] + local @ turns[sides].swapaxes(2, 3)
 
 
 class SeenJoints:
@@ -185,8 +259,9 @@ class SeenJoints:
         rubble = np.full(blocks + 1, np.inf)  # the last stands for the support
         for frame in self._frames:
             time = float(self._recording.times[frame])
-            seen = classify(self._assembly, self._recording.poses[frame], least=SEEN)
-            faces = self._placing.faces(frame, frame, 0.0)[..., :2]
+            poses = self._recording.poses[frame]
+            seen = classify(self._assembly, poses, least=SEEN)
+            faces = self._placing.faces(lifted(poses))[..., :2]
             # Turned far, blocks may have left each other though neither end seems open.
             apart = np.array([joint.state is JointState.OPEN for joint in seen])
             apart |= distances(faces, faces[:, ::-1, None]).min(axis=(1, 2)) > SEEN
@@ -194,7 +269,7 @@ class SeenJoints:
             held = np.zeros(blocks + 1, dtype=bool)
             for side in (before, after):
                 held[side[parted > time]] = True
-            bottoms = self._placing.corners(frame, frame, 0.0)[..., 1].min(axis=(1, 2))
+            bottoms = self._placing.corners(lifted(poses))[..., 1].min(axis=(1, 2))
             lowest = np.full(blocks, np.inf)
             np.minimum.at(lowest, self._placing.owner, bottoms)
             loose = ~held[:blocks] | (lowest < self._low)
