@@ -36,6 +36,16 @@ class JointState(StrEnum):
             return cls.HINGE_AND_SLIDES if slides else hinge
         return cls.SLIDES if slides else cls.CLOSED
 
+    @property
+    def hinge(self) -> int | None:
+        """End about which a joint turns: 0 is the inner one, 1 the outer; else None."""
+        return {JointState.HINGE_INTRADOS: 0, JointState.HINGE_EXTRADOS: 1}.get(self)
+
+    @property
+    def words(self) -> str:
+        """The state as people read it."""
+        return self.value.replace("-", " ")
+
 
 @dataclass(frozen=True, eq=False)
 class JointMotion:

@@ -54,8 +54,9 @@ def fragility(
     as_json: bool = JSON,
 ) -> None:
     """Find which share of records of the ground brings it down, by their amplitude."""
-    named = {"record": record, "amplitudes": amplitudes}
-    problem = anything_asked(scene, given, loading, thick=True, **named)
+    problem = anything_asked(
+        scene, given, loading, thick=True, record=record, amplitudes=amplitudes
+    )
     allowed = "x and y: in space there are check, bracket, simulate, render and report"
     require(not problem.in_space, "blocks", "three coordinates", allowed)
     for path in out or ():

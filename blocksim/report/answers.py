@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 HINGE = "hinge"
 SHAPE = ("eta", "voussoirs", "weight", "radius", "depth")
 """What is told of the shape of an arch besides its half-angle."""
-HINGED = {JointState.HINGE_INTRADOS: 0, JointState.HINGE_EXTRADOS: 1}
-"""Which end of a joint stays closed, in the order of its `ends`."""
 
 
 def check_record(answer: Check[Any], carried: Carried | None = None) -> CheckRecord:
@@ -90,7 +88,7 @@ def state_words(problem: Problem[Any]) -> Callable[[JointState], str]:
     """Return what says a joint's state: only an arch has an intrados and an extrados."""
     if problem.is_arch:
         return lambda state: state.value
-    return lambda state: HINGE if state in HINGED else state.value
+    return lambda state: state.value if state.hinge is None else HINGE
 
 
 def _arch(of: ArchAnswer) -> ArchRecord:
@@ -129,7 +127,7 @@ def _joints(answer: Check[Any], carried: Carried | None) -> list[JointRecord]:
     for k, joint in enumerate(assembly.joints):
         ends = _ends(joint)
         seen = answer.joints[k]
-        end = HINGED.get(seen.state) if not problem.in_space else None
+        end = None if problem.in_space else seen.state.hinge
         told.append(
             {
                 "a": side_name(assembly, k, 0),

@@ -20,7 +20,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import fill_loads
 from blocksim.simulation.recording import Recording
 from blocksim.view.arrows import FEW, forces_of
-from blocksim.view.drawing import HINGES, carried, state_of_any
+from blocksim.view.drawing import carried, state_of_any
 from blocksim.view.stage import Stage
 from blocksim.view.structure import supports_shown
 
@@ -189,7 +189,7 @@ def _marks(
     for joint, state in enumerate(states):
         if state is JointState.CLOSED:
             continue
-        end = HINGES.get(state)
+        end = state.hinge
         hinge = None if end is None else _place(ends[joint, end])
         look = (state if is_arch else state_of_any(state)).value
         # The dot is drawn with the later of the two blocks, in front of both.

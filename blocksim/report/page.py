@@ -30,14 +30,6 @@ from blocksim.studies.questions import NEAR, SLOWLY, StructureRow
 from blocksim.studies.validate import ASIDE, ERROR_BOUND, Row, parted
 from blocksim.view import style
 
-STATES = {
-    JointState.HINGE_INTRADOS: "hinge at the intrados",
-    JointState.HINGE_EXTRADOS: "hinge at the extrados",
-    JointState.SLIDES: "slides",
-    JointState.HINGE_AND_SLIDES: "hinge and slides",
-    JointState.OPEN: "open",
-}
-
 
 def report_page(
     found: Sequence[Row],
@@ -73,7 +65,7 @@ def report_page(
         tol=" and ".join(map(_width_of, engines)),
         aside=_percent(ASIDE),
         bound=_percent(ERROR_BOUND),
-        states=STATES,
+        states=[state for state in JointState if state is not JointState.CLOSED],
         structure_misses=[row for row in structures if row.miss],
         **_structures(structures),
         mode_styles=style.MODES,
@@ -171,7 +163,7 @@ def _shown(recording: Recording, *, thickest: bool) -> dict[str, Any]:
     )  # fmt: skip
     known = "".join(f"{each}, " for each in recording.problem.measures[1:2])
     active = [
-        f"{math.degrees(joint.angle):+.1f}° {STATES[joint.state]}"
+        f"{math.degrees(joint.angle):+.1f}° {joint.state.words}"
         for joint in joints_of(recording)
         if joint.state is not JointState.CLOSED
     ]

@@ -25,7 +25,7 @@ from blocksim.arch.theory.equations import normal_force
 from blocksim.arch.theory.lines import critical_moment, friction_line, thrust_line
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
-from blocksim.view.drawing import ARCH_WORDS, carried, friction_words
+from blocksim.view.drawing import carried, friction_words
 from blocksim.view.style import (
     FONT,
     FRICTION,
@@ -262,7 +262,7 @@ def _mark_joints(axes: Axes, picture: ArchPicture) -> None:
             if turns and not (out and into):
                 axes.plot(radius * math.sin(angle), radius * math.cos(angle), "o", ms=7,
                           mfc="white", mec=JOINTS[state], mew=2.0, zorder=7,
-                          label=ARCH_WORDS[state])  # fmt: skip
+                          label=state.words)  # fmt: skip
         if any(slides):
             tone = JOINTS[JointState.SLIDES]
             axes.plot(*_radius(angle, inner, outer), color=tone, lw=4.0, zorder=6,

@@ -19,15 +19,6 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.words import printable
 from blocksim.view.style import FONT, JOINTS
 
-ARCH_WORDS = {
-    JointState.HINGE_INTRADOS: "hinge intrados",
-    JointState.HINGE_EXTRADOS: "hinge extrados",
-    JointState.SLIDES: "slides",
-    JointState.HINGE_AND_SLIDES: "hinge and slides",
-    JointState.OPEN: "open",
-}
-HINGES = {JointState.HINGE_INTRADOS: 0, JointState.HINGE_EXTRADOS: 1}
-"""End of a joint that stays closed: inner or outer."""
 DOTS = 150
 """In an inch of a picture whose height is not given."""
 
@@ -54,14 +45,14 @@ def save_figure(
 
 def state_of_any(state: JointState) -> JointState:
     """Give hinges at either end one colour: only an arch has an intrados and an extrados."""
-    return JointState.HINGE_INTRADOS if state in HINGES else state
+    return state if state.hinge is None else JointState.HINGE_INTRADOS
 
 
 def words_of(state: JointState, *, is_arch: bool) -> tuple[str, str]:
     """Words and colour of a joint's state in a legend."""
-    if not is_arch and state in HINGES:
+    if not is_arch and state.hinge is not None:
         return "hinge", JOINTS[state_of_any(state)]
-    return ARCH_WORDS[state], JOINTS[state]
+    return state.words, JOINTS[state]
 
 
 def round_length(length: float) -> float:

@@ -25,13 +25,13 @@ from blocksim.view.captions import (
     title,
     verdict_words,
 )
-from blocksim.view.drawing import ARCH_WORDS, round_length, words_of
+from blocksim.view.drawing import round_length, words_of
 from blocksim.view.following import EASED, View, eased, is_lost, needed, zoomed
 from blocksim.view.planar import PlanarView
 from blocksim.view.solidstage import SolidStage
 from blocksim.view.spatial import SpatialView
 from blocksim.view.stage import Stage
-from blocksim.view.style import INK, QUIET, THRUST
+from blocksim.view.style import INK, JOINTS, QUIET, THRUST
 
 ViewName = Literal["2d", "3d"]
 BEFORE, AFTER = 0.8, 1.2
@@ -268,7 +268,7 @@ class Film:
     def _entries(self, states: set[JointState], *, thrust: bool) -> list[tuple[str, str]]:
         """Words and colours of what occurs."""
         is_arch = all(stage.is_arch for stage in self._stages)
-        told = [words_of(state, is_arch=is_arch) for state in ARCH_WORDS if state in states]
+        told = [words_of(state, is_arch=is_arch) for state in JOINTS if state in states]
         if thrust and any(stage.thrust for stage in self._stages):
             rests = all(stage.carried is None or stage.carried.stands for stage in self._stages)
             told.append((f"{'' if rests else 'nearest '}line of thrust at rest", THRUST))

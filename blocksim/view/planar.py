@@ -8,7 +8,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.regions import hull
 from blocksim.view.canvas import Label, Panel, Shape, colour, edge_width, mixed, stone_tones
-from blocksim.view.drawing import HINGES, words_of
+from blocksim.view.drawing import words_of
 from blocksim.view.stage import Stage
 from blocksim.view.style import DASHES, GROUND, INK, PAPER, STONE, THRUST
 from blocksim.view.timeline import Moment
@@ -131,8 +131,7 @@ class PlanarView:
             faces += [
                 Shape(pair, edge=tone, width=width, closed=False, dash=dash) for pair in places
             ]
-            hinge = HINGES.get(state)
-            if hinge is not None:
+            if (hinge := state.hinge) is not None:
                 middle = (places[0][hinge] + places[1][hinge]) / 2
                 dots.append(
                     Shape(_circle(middle, 1.9 * width), colour(PAPER), tone, 0.7 * width)

@@ -24,7 +24,7 @@ from blocksim.common.words import printable
 from blocksim.limit import in_world
 from blocksim.view.arrows import FAINT, acting_on
 from blocksim.view.dimensions import Length, dimensions_of
-from blocksim.view.drawing import HINGES, rims
+from blocksim.view.drawing import rims
 from blocksim.view.sheet import A4, Sheet, scale_for, scale_words
 from blocksim.view.structure import fill_outlines
 
@@ -156,8 +156,8 @@ def _states(space: Any, sheet: Sheet, scale: float) -> None:
         ends = (joint.inner, joint.outer)
         if not joint.is_corner:
             space.add_line(*ends, dxfattribs=layer)
-        if state in HINGES:
-            space.add_circle(ends[HINGES[state]], HINGE * scale / 1e3, dxfattribs=layer)
+        if state.hinge is not None:
+            space.add_circle(ends[state.hinge], HINGE * scale / 1e3, dxfattribs=layer)
 
 
 def _gaps(space: Any, sheet: Sheet, scale: float) -> None:

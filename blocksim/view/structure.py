@@ -20,7 +20,6 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import profile_of, road_of
 from blocksim.view.arrows import draw_loads
 from blocksim.view.drawing import (
-    HINGES,
     carried,
     clipped,
     rims,
@@ -284,6 +283,6 @@ def draw_states(axes: Axes, problem: Problem, states: Sequence[JointState]) -> N
         axes.plot(*ends.T, color=tone, lw=3.2, zorder=6, label=words, ls=line_style(tone),
                   solid_capstyle="butt", dash_capstyle="butt", ms=5,
                   marker="D" if joint.is_corner else "", gid=f"joint-{index}")  # fmt: skip
-        if state in HINGES and not joint.is_corner:
-            axes.plot(*ends[HINGES[state]], "o", ms=6, mfc="white", mec=tone, mew=1.6,
+        if state.hinge is not None and not joint.is_corner:
+            axes.plot(*ends[state.hinge], "o", ms=6, mfc="white", mec=tone, mew=1.6,
                       zorder=7, gid=f"hinge-{index}")  # fmt: skip

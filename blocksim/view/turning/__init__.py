@@ -1,4 +1,4 @@
-"""A page in which blocks are turned around: words, a model, and a viewer of models in one file."""
+"""A page in which blocks are turned around: words, a model and a viewer of models."""
 
 from __future__ import annotations
 
