@@ -21,7 +21,7 @@ from blocksim.common.errors import BlocksimError, MachineError, in_line
 
 WRONG_INPUT = 2
 CRASHED = 70
-"""After what should not happen: Python's own 1 would say that the arch collapses."""
+"""Exit code after a failure of blocksim. Python's own 1 would say that the arch collapses."""
 MACHINE = 74
 """A full disk, no permission, no memory; of that number in sysexits.h, too."""
 LONGEST = 1000
@@ -30,9 +30,9 @@ PLAIN = {
     "is not a valid float": "must be a number",
     "is not a valid integer": "must be a whole number",
 }
-"""What click says, and what is said instead."""
+"""Words of click, and those that are said instead."""
 CLOSED = 141
-"""As a shell says it of the signal for a closed pipe."""
+"""Exit code that a shell gives for the signal of a closed pipe."""
 
 
 def main() -> None:

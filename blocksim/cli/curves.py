@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 KINDS = ("csv", "pdf", "svg", "png")
 OVER = ("push", "spread")
-"""What moves blocks."""
+"""Searches that move blocks."""
 
 
 def require_curves(over: str | None, out: Sequence[Path] | None) -> None:

@@ -38,7 +38,7 @@ FALL = 20.0
 HEIGHT = 720
 HEIGHTS = (180, 2160)
 MOST_NUMBERS = 5_000_000
-"""Of the poses of a recording that is written as a model or a table."""
+"""Most numbers of the poses that are written as a model or a table."""
 ROUGH = 1e-4
 """Residual of contacts in space that is told."""
 MODELS, TABLES = ("glb", "gltf"), ("csv", "json")

@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COLOURS = {"STANDS": "green", "COLLAPSES": "red", "UNDECIDED": "yellow"}
-"""Of the word with which an answer begins."""
+"""Colour of the word with which an answer begins."""
 _LABEL = re.compile(r"  \S{1,7} +(?=\S)|\s*")
 _UNIT = re.compile(r"(?<=\d) (?=[A-Za-z%])")
-"""What is between a number and what it counts, where no line ends."""
+"""Space between a number and what it counts, where no line ends."""
 
 
 def progress() -> AbstractContextManager[Progress]:

@@ -17,7 +17,7 @@ from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.ways import ASIDE, DENSITY, THICK
 
 STREAM = "-"
-"""What stands for JSON lines on standard input."""
+"""Subject that means JSON lines on standard input."""
 IN_METRES = " (or --span, --rise and --thickness, in m)"
 
 

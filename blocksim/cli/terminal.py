@@ -19,7 +19,7 @@ from blocksim.common.words import printable
 WIDE = 128
 """Characters in a line from which on no cell of a table has to be folded."""
 MOMENT = 0.5
-"""What takes no longer has no bar [s]."""
+"""Time up to which no bar is shown [s]."""
 
 
 @contextmanager

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 HINGE = "hinge"
 SHAPE = ("eta", "voussoirs", "weight", "radius", "depth")
-"""What is told of the shape of an arch besides its half-angle."""
+"""Fields of the shape of an arch that are told besides its half-angle."""
 
 
 def check_record(answer: Check[Any], carried: Carried | None = None) -> CheckRecord:

@@ -7,16 +7,16 @@ import re
 from collections.abc import Mapping
 
 PAGE = "report.html"
-"""What the links of map.svg lead to, beside it."""
+"""File beside map.svg to which its links lead."""
 NOT_OURS = re.compile(r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", re.DOTALL)
 OPENING = re.compile(r"<svg\b[^>]*>")
 BOX = re.compile(r'viewBox="[^"]*"')
 STYLE = re.compile(r'style="[^"]*"')
 COLOUR = re.compile(r"#([0-9a-f]{6})\b")
 FILL = re.compile(r'(<rect [^>]*)fill="#([0-9a-f]{6})"')
-"""Of hatching, the one colour that is no style."""
+"""Colour of hatching, the only one outside a style."""
 OWN = re.compile(r'( id="|href="#|url\(#)')
-"""Before the name of an element of the picture."""
+"""Text before the name of an element of the picture."""
 LINK = re.compile(rf'<a xlink:href="(?:{re.escape(PAGE)})?#row-(\d+)"(?: target="_blank")?')
 DARKEST, LIGHTEST = 0.12, 0.93
 """Lightness of what is white and black by day, in the dark."""

@@ -22,7 +22,7 @@ from blocksim.common.sheets import sheet_of
 from blocksim.common.version import __version__
 
 COLUMNS = ("crown turns", "inner turns", "inner slides", "shoulder turns", "shoulder slides")
-"""What is said of `RATES`, in their order."""
+"""Words for `RATES`, in their order."""
 
 
 def map_record(weight: Weight) -> dict[str, object]:

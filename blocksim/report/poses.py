@@ -18,11 +18,11 @@ from blocksim.common.version import __version__
 from blocksim.simulation.recording import Recording
 
 VERSION = 1
-"""Of the JSON's fields: grows when one changes its meaning or goes."""
+"""Version of the JSON's fields. It grows when one changes its meaning or goes."""
 COLUMNS = ("x_m", "y_m", "rotation_rad", "z_m", "rotation_x_rad", "rotation_y_rad")
-"""What the columns of poses are; planar recordings have the first three."""
+"""Names of the columns of poses. Recordings of the plane have the first three."""
 IN_SPACE = ("x_m", "y_m", "z_m", "rotation_x_rad", "rotation_y_rad", "rotation_z_rad")
-"""The same of blocks in space."""
+"""Names of the columns for blocks in space."""
 
 
 def write_recording_csv(recording: Recording[Any], file: BinaryIO) -> None:

@@ -32,9 +32,9 @@ FOLLOWS = {
     "spread": set[str](),
     "push": {"load"},
 }
-"""What follows from each parameter that any problem may have."""
+"""Keys that follow from each parameter that any problem may have."""
 BUILT = {*SIZES[:4], "weight_kN", "fill_weight_kN", "fill_is"}
-"""What follows from the parameters of a maker."""
+"""Keys that follow from the parameters of a maker."""
 
 
 def problem_record(problem: Problem[Any], over: str | None = None) -> ProblemRecord:

@@ -11,7 +11,7 @@ from blocksim.simulation.recording import Recording
 from blocksim.simulation.shaken import rocking_of
 
 ROUNDING = 1e-12
-"""What is smaller is nothing but rounding."""
+"""Length below which there is nothing but rounding [size]."""
 LEAST_ROTATION = 1e-3
 """Rotation of a block from which on a recording is said to have turned one [rad]."""
 

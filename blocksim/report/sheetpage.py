@@ -47,7 +47,7 @@ from blocksim.view.turning import turning_page
 COLUMN = (182.0, 128.0)
 """Width and most height of the drawing on the page [mm]."""
 LOWER = (182.0, 90.0)
-"""The same of the drawing of pressures."""
+"""Width and most height of the drawing of pressures [mm]."""
 FEW = 8
 """Joints up to which their table is not halved."""
 BELOW = 0.999

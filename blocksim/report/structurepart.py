@@ -92,7 +92,7 @@ QUESTIONS = {
     "overhang": "largest overhang",
     "pier_width": "least width of piers",
 }
-"""What is asked, by the parameter asked over."""
+"""Questions in words, by the parameter asked over."""
 EXACT = 1e-12
 """Relative differences below this are round-off, and said to be none."""
 

@@ -26,7 +26,7 @@ from blocksim.engines import ENGINES
 from blocksim.studies.refinement import REFINEMENTS, TOL, look
 
 START = 1.0037
-"""Where brackets start, over the exact value: so that no tolerance is met by luck."""
+"""Start of a bracket over the exact value, so that no tolerance is met by luck."""
 REPEATS = 3
 QUICK = slice(None, -1, 2)
 """Every other setting, and not the finest."""

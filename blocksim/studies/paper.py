@@ -35,7 +35,7 @@ TABLE_1 = {
     "B": (2.0, 2.690297881776622, 2.774176793356034, 0.03200476409857036,
           0.0, 0.1760126676508405),
 }  # fmt: skip
-"""As printed."""
+"""Table 1 as printed, in the order of `SYMBOLS`."""
 SYMBOLS = ("eta", "mu", "alpha", "h", "beta_r", "beta_s")
 
 
@@ -201,4 +201,4 @@ CONTENTS = {
     24: "Border point B: purely sliding, overturning-sliding",
     25: "Unbounded friction: purely overturning, at eta = 2 and at eta = 1",
 }
-"""What each figure shows."""
+"""Words for each figure."""

@@ -132,7 +132,7 @@ def _valued(row: StructureRow, known: Known, expected: ExpectEntry) -> Structure
 
 
 QUESTIONS: dict[str, Question] = {"verdict": _judged, "over": _valued}
-"""What answers an expectation, by the key it has; another question is one more of them."""
+"""Answers by the key of an expectation. Another question is one more of them."""
 
 
 def _exactly(row: StructureRow, family: Family, value: float) -> StructureRow:

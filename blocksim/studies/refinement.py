@@ -73,7 +73,7 @@ REFINEMENTS = {
         ("voussoirs", "number of voussoirs, at the finest tolerance", 2, "theory"),
     )
 }
-"""By name."""
+"""Refinements by name."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -101,7 +101,7 @@ WRITERS: dict[str, tuple[str, Callable[[Scene], bytes | None]]] = {
     "scenes": ("json", lambda scene: json_text(scene.record(), indent=1).encode() + b"\n"),
     "mjcf": ("xml", mjcf),
 }
-"""What is written into which folder, with which ending; None is left out."""
+"""Folders, each with the ending of its files and what writes one; None is left out."""
 
 
 @cache

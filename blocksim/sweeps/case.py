@@ -27,7 +27,7 @@ from blocksim.kinds.files import structure_of
 ARCH = CircularArch.name
 NEEDED = {"half_angle_deg", "mu", "voussoirs", "weight"}
 PLAIN = NEEDED | {"eta", "ratio"}
-"""What may be given of an arch that is answered in bulk; a column of their own for each."""
+"""Parameters of an arch that is answered in bulk. Each has a column of its own."""
 ACTING = {
     "load": Field(about="factor on the live loads", range=FACTOR),
     "tilt_deg": Field(about="tilt of the table", range=TILT_DEG),
@@ -35,7 +35,7 @@ ACTING = {
     "amplitude_g": Field(about="how strongly the ground shakes", range=AMPLITUDE),
     "duration_s": Field(about="how long it shakes", range=DURATION),
 }
-"""What acts on a structure."""
+"""Quantities that act on a structure."""
 Text = str | None
 Number = float | None
 Infinite = float | Literal["inf", "-inf"] | None

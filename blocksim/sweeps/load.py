@@ -40,7 +40,7 @@ BY_ANGLE: dict[str, Field] = {
     "voussoirs": Field(about="how many", range=VOUSSOIRS),
     "weight": Field(about="where a voussoir's weight acts", choices=WEIGHTS),
 }
-"""What arches by their half-angle have otherwise than others."""
+"""Parameters that arches by their half-angle have otherwise than others."""
 USUAL_ARCH = {"voussoirs": 27, "weight": "centreline"}
 
 

@@ -28,11 +28,11 @@ FEW, SHORT = 8, 0.4
 WIDE, TALL = 190.0, 64.0
 """Size of the inset with a pulse [pixels at 720]."""
 POINTS = 240
-"""Of a pulse."""
+"""Points at which the curve of a pulse is drawn."""
 FIXED = 0.25
 """Distance between marks that stand still as the ground moves [size]."""
 ROD, FAR = 0.3, 6.0
-"""Half the width of a rod that holds a support, over its radius, and its length [size]."""
+"""A rod holds a support: half its width over the support's radius, and its length [size]."""
 PUSH = 56.0
 """Length of the arrow of a push, beside its words [pixels at 720]."""
 

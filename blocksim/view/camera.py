@@ -20,7 +20,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.view.canvas import Colour
 
 DISTANCE = 4.2
-"""Of the eye from the middle, in half-diagonals of what is shown."""
+"""Distance of the eye from the middle, in half-diagonals of what is shown."""
 NEAREST = 0.3
 """Least distance from the eye at which anything is seen, over what is shown."""
 FLAT = 1e-9

@@ -120,7 +120,7 @@ class Panel(NamedTuple):
 
 
 Part = tuple[Panel, Sequence[Shape]]
-"""What is drawn into a panel."""
+"""A panel, and the shapes that are drawn into it."""
 
 
 class Canvas:

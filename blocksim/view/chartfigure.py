@@ -48,7 +48,7 @@ CROSS: dict[str, Any] = {"ls": "", "marker": "x", "ms": 5}
 BAND = 0.14
 """Share of a panel's height, above what has an error, for brackets that were not found."""
 WIDTH, HEIGHT, NARROWEST = 2.2, 2.1, 4
-"""Of a panel [inch], and panels a picture is wide at least."""
+"""Sizes of a panel [inch], and the least number of panels abreast."""
 MOST_ABREAST = 7
 """Entries in a line of the legend."""
 

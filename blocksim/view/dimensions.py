@@ -18,7 +18,7 @@ OFF, ARC_OFF = 8.0, 6.0
 EVEN = 1e-6
 """Share of a length by which others may differ from it and still count as the same."""
 QUARTER = 0.25
-"""Where along an arch its thickness is measured."""
+"""Share of the arch, from its left end, at which the thickness is measured."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -20,7 +20,7 @@ from blocksim.common.words import printable
 from blocksim.view.style import FONT, JOINTS
 
 DOTS = 150
-"""In an inch of a picture whose height is not given."""
+"""Dots an inch of a picture whose height is not given."""
 
 
 def new_figure(size: tuple[float, float] | None = None, *, pad: float | None = None) -> Figure:

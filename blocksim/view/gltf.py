@@ -17,7 +17,7 @@ from blocksim.view.canvas import colour, stone_tones
 from blocksim.view.style import INK
 
 TONES = 8
-"""Of stone: neighbours differ a little."""
+"""Number of tones of stone, by which neighbours differ a little."""
 _FLOAT, _WHOLE, _LINES = 5126, 5125, 1
 _VERTICES, _INDICES = 34962, 34963
 _MAGIC, _JSON, _BINARY = 0x46546C67, 0x4E4F534A, 0x004E4942

@@ -30,14 +30,14 @@ from blocksim.view.mapshapes import COEFFICIENT, LARGEST_MU, FrictionAxis, map_s
 from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
 
 INSET = (0.08, 0.535, 0.27, 0.39)
-"""Where the enlarged part is, in shares of the map: where only ss is."""
+"""Box of the enlarged part, in shares of the map. Only ss is there."""
 BESIDE_INSET = (0.5, 0.82)
-"""Where ss is named then."""
+"""Place of the name ss beside the enlarged part [mu, eta]."""
 POINTS_ACROSS, POINTS_UP = 440.0, 400.0
 """Size of the map beside a legend in typographic points, about."""
 NONE = ": no thickness stands"
 OF: dict[Weight, str] = {"centreline": "", "sector": ", weight of sectors"}
-"""What a title says of the weight."""
+"""Words of a title on the weight."""
 
 
 @dataclass(frozen=True, kw_only=True)

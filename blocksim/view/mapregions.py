@@ -55,7 +55,7 @@ CENTRAL = Section(
     _named((2.0, 0.66), (1.45, 1.0), (1.235, 0.618), (2.1, 0.87), (2.15, 1.1)),
     (2.2, 2.24, 1.02),
 )
-"""Where most regions meet (Fig. 11)."""
+"""The part in which most regions meet (Fig. 11)."""
 WHOLE_SECTOR = WHOLE._replace(names={**WHOLE.names, Mode.RRS: (2.45, 0.835)})
 CENTRAL_SECTOR = Section(
     (1.05, 2.25),
@@ -63,7 +63,7 @@ CENTRAL_SECTOR = Section(
     _named((1.85, 0.58), (1.25, 0.9), (1.098, 0.532), (1.9, 0.8), (1.95, 1.03)),
     (2.0, 2.05, 0.95),
 )
-"""The same two where voussoirs weigh at their own centroids."""
+"""The whole map and its middle where voussoirs weigh at their own centroids."""
 NEAR = Section(
     (1.70, 1.90),
     (0.92, 1.02),
@@ -74,13 +74,13 @@ NEAR = Section(
         Mode.RSR: (1.868, 0.9625),
     },
 )
-"""What is enlarged where arches crowd: the points S and J, and the thin region rsr."""
+"""The part that is enlarged where arches crowd: S, J and the thin region rsr."""
 LINES = {"divide": "-", "first sliding": "-", "equal angles": ":", "crown hinge": "--"}
 """Names and dashes of the map's lines."""
 STRIP = (4.12, 4.30)
-"""Where unbounded friction is drawn, beyond the largest that is drawn to scale."""
+"""Ends of the strip for unbounded friction, beyond the axis that is to scale."""
 LETTERS = {"T": (-13, 4), "S": (-19, -12), "J": (-17, 6), "B": (13, -9)}
-"""Where the letter of each landmark begins, in points from it."""
+"""Place of each landmark's letter, from the landmark [points]."""
 
 
 def section_of(weight: Weight, *, central: bool) -> Section:

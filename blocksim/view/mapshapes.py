@@ -26,7 +26,7 @@ LARGEST_PHI = 89.9
 POINTS = 160
 """Points on each line."""
 ISO_DEGREES = (60, 90, 110, 125, 135, 142.504, 145, 149.156, 155, 158.949)
-"""Half-angles of which the page draws lines; `iso_angles` has them to their last digit."""
+"""Half-angles whose lines the explorer draws. `iso_angles` has all digits of them."""
 ROUND_DEGREES = (60, 90, 110, 125, 135, 145, 155)
 ISO_POINTS = 1200
 LEVEL = 1e-9

@@ -60,7 +60,7 @@ NOTES = {
     Mode.RS: Note(r"$\mu=\mu_{is}$, $h=h_U$, $\beta_r=0$", (3.4, 1.52)),
     Mode.R: Note(r"$h=h_2=0$", (sum(STRIP) / 2, 1.25)),
 }  # fmt: skip
-"""What holds in each: h_L (1), h_U (2), h_2 (3), h_e (4), mu_ss (8), mu_is (9)."""
+"""Equations of each region: h_L (1), h_U (2), h_2 (3), h_e (4), mu_ss (8), mu_is (9)."""
 
 
 def paper_figure(number: int) -> Figure:

@@ -17,13 +17,13 @@ from blocksim.view.drawing import new_figure
 from blocksim.view.style import FRICTION, INK, MECHANISM, QUIET, STONE, THRUST
 
 HALF_ANGLE, ETA = math.radians(75), 0.24
-"""Of the arch of Fig. 1."""
+"""Half-angle and thickness ratio of the arch of Fig. 1."""
 SECTION = math.radians(38)
 """Angle of the section that is shown [rad]."""
 FRICTION_SHOWN = 0.6
 """Friction coefficient of Fig. 12."""
 HALF_DEPTH, RATE, LENGTH = 0.5, 0.3, 0.8
-"""Half of the thickness, size of the motion and length of the blocks in Fig. 12 (b)."""
+"""Sizes in Fig. 12 (b): half the thickness, the motion, the length of a block."""
 RATES = (
     (r"$\dot\lambda_1$: turns about the extrados", 0),
     (r"$\dot\lambda_2$: turns about the intrados", 1),

@@ -54,9 +54,9 @@ ARROW, LEAST, HEAD = 14.0, 4.0, 1.5
 TITLED = np.array([110.0, 8.0])
 """Width of a title block and height of its lines [mm]."""
 DATES = re.compile(r"(\$TDU?(?:CREATE|UPDATE)\n *40\n)[^\n]*")
-"""Of the header, where ezdxf writes those of the year 2000 so that a file can be made again."""
+"""Dates of the header. ezdxf writes the year 2000 there, for files that are made again."""
 METRES = 6
-"""Of $INSUNITS."""
+"""Number by which $INSUNITS means metres."""
 LETTERS, HINGE = 2.5, 1.2
 """Height of letters and radius of the mark of a hinge, on paper [mm]."""
 ROOM = np.array([0.75, 0.55])

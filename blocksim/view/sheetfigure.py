@@ -32,7 +32,7 @@ from blocksim.view.style import FONT, INK, QUIET, THRUST
 from blocksim.view.thrustlines import force_sizes
 
 INCH = 25.4
-"""In millimetres."""
+"""Millimetres in an inch."""
 SCREEN = (190.0, 150.0)
 """Width and most height of a drawing in a notebook [mm]."""
 REACTION = 14.0
@@ -45,7 +45,7 @@ NUMBER, DIGIT, ROOMY = 2.4, 1.1, 6.0
 """Width of a block that has room for its number, of a letter of that, and of one that has
 more than enough [mm]."""
 EVERY = 5
-"""Of blocks with little room, one in so many has its number."""
+"""Where blocks have little room, one in so many has its number."""
 BAND = 9.0
 """Width of the band of the largest force along a line of thrust [points]."""
 LINES = {"min": (0, (6, 2)), "max": (0, (1, 1.2)), "safest": "-"}

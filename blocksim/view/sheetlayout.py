@@ -16,7 +16,7 @@ from blocksim.view.sheet import A4, Paper, Sheet, scale_for
 from blocksim.view.style import INK
 
 MARGIN, NARROW = 12.0, 2.0
-"""Around the page, and around what is put into a page [mm]."""
+"""Widths of the margin of a page, and of a drawing within a page [mm]."""
 WIDE, COLUMNS = 250.0, 2
 """Width of a page that has room for a scale beside the legend [mm], and its columns."""
 SIDE, ABOVE, BELOW, BARE = 22.0, 14.0, 24.0, 3.0
@@ -26,9 +26,9 @@ LINE, TITLE = 4.2, 8.0
 LETTER = 1.62
 """Width of a letter of the facts [mm]."""
 CLEAR = {"fc": "white", "ec": "none", "pad": 0.5, "alpha": 0.8}
-"""Behind words, lest lines cross them."""
+"""Look of the box behind words, lest lines cross them."""
 STEP, TRIES = 1.5, 12
-"""Words are moved out of the way of others by so much [mm], so many times at most."""
+"""Step by which words give way to others [mm], and the most steps."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

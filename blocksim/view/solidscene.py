@@ -25,9 +25,9 @@ BED = 0.25
 WAY = 0.15
 """How far a mechanism is drawn: its largest way in units of the size."""
 Marked = Sequence[tuple[Array, Array, str]]
-"""What is painted on faces: corners, or ends; normal out of the block, colour."""
+"""Marks on faces: corners or ends of the joint, normal out of the block, colour."""
 Marks = Mapping[int, Marked]
-"""The same by block."""
+"""Marks by the number of the block."""
 GONE = 0.1
 """Opening of all points from which on it is no joint any more [size]."""
 LONGEST = 0.25

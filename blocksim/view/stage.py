@@ -31,7 +31,7 @@ TOUCHING = 0.02
 FARTHEST = 1.75
 """Blocks are followed up to this far beyond where they were at rest [r]."""
 ALONG = 2.25
-"""The same to the sides on supports that are known, which are shown as far [size]."""
+"""Distance to the sides up to which blocks on known supports are followed [size]."""
 FOLLOWED = 5.0
 """How far a camera follows blocks that go on and on [widths of what it shows at first]."""
 BESIDE, ABOVE = 0.25, 0.1
@@ -39,7 +39,7 @@ BESIDE, ABOVE = 0.25, 0.1
 WIDER = 1.12
 """Depth of the footings over that of the blocks."""
 DIGITS = 9
-"""Of a line of thrust [size]."""
+"""Decimals of a line of thrust [size]."""
 
 
 class Stage(Timeline):

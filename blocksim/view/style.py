@@ -42,11 +42,11 @@ def mix(one: str, other: str, share: float) -> str:
 
 STONE, GROUND, PAPER = "#d9cdb8", "#b9b3a6", "#fbfaf7"
 FILL = "#efe9dc"
-"""Of fill and backing, which are hatched."""
+"""Colour of fill and backing, below their hatching."""
 INK, QUIET = "#222222", "#5d5a53"
-"""Of lines and words, and of those that matter less."""
+"""Colours of lines and words, and of those that matter less."""
 MISS = "#dd0000"
-"""Of what is wrong: answers of engines, blocks that overlap, shapes that are refused."""
+"""Colour of what is wrong: answers, blocks that overlap, shapes that are refused."""
 
 
 def _mode(colour: str, marker: str) -> Style:
@@ -85,22 +85,21 @@ JOINTS = {
     JointState.HINGE_AND_SLIDES: "#a25789",
     JointState.OPEN: "#525252",
 }
-"""Of joints that take part; a closed one is drawn as stone. Hinges have a dot at the end that
-stays closed."""
+"""Colours of joints that take part. A hinge also has a dot at the end that stays closed."""
 THRUST, FRICTION, MECHANISM = "#b4410a", "#6060cf", "#307f53"
 DEAD, LIVE = INK, "#661527"
-"""Of loads besides gravity: those that stay, and those multiplied by the load factor."""
+"""Colours of loads that stay, and of those multiplied by the load factor."""
 GAP = "#4a1f4f"
-"""Of joints at which a drawing's gap or overlap is closed."""
+"""Colour of joints at which a drawing's gap or overlap is closed."""
 ISO = "#0072B2"
-"""Of lines of equal half-angle on maps that have no modes."""
+"""Colour of lines of equal half-angle on maps that have no modes."""
 
 USE = (
     (0.5, "up to 50 % used", "#adb7eb"),
     (0.8, "50 to 80 % used", "#6c7eda"),
     (math.inf, "more than 80 % used", "#2f45bc"),
 )
-"""Of joints by how much of their width or friction is used: up to a share, words, colour."""
+"""Looks of joints by the share of width or friction in use: largest share, words, colour."""
 
 
 def use_of(share: float) -> tuple[str, str]:

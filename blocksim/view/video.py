@@ -30,9 +30,9 @@ THREADS = 2
 LONGEST = 600.0
 """Longest film [s]."""
 MOST_PIXELS = {"mp4": 5e10, "gif": 6e8}
-"""Of all frames together: those of a gif are in memory at once."""
+"""Most pixels of all frames. Those of a gif are in memory at once."""
 COLOURS, SAMPLES = 255, 9
-"""Of a gif: colours, and frames they are chosen from."""
+"""Colours of a gif, and frames from which they are chosen."""
 DRAWN = (*JOINTS.values(), THRUST, INK, QUIET, PAPER, GROUND)
 """Colours that say something, whatever their share of a frame."""
 

@@ -55,7 +55,7 @@ STRUCTURES: dict[str, Maker] = {
 }
 SHIPPED = ("box2d_arch", "ferris_tinloi_3", "gable", "harmonic_5")
 LETTERS = {"T": (-10, -2), "S": (-11, -9), "J": (-7, 9), "B": (11, -11)}
-"""Where the letter of each landmark stands, in pixels from it, up and to the right."""
+"""Place of each landmark's letter, from the landmark, to the right and up [pixels]."""
 
 
 def explorer_page(results: Sequence[Mapping[str, Any]] = (), source: str = "") -> str:
