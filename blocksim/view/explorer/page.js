@@ -5,8 +5,8 @@
   const data = JSON.parse(document.getElementById("data").textContent);
   const words = wordsWith(data.modes);
   const { number, degrees } = words;
+  const { assess, underLoad, verdictOf } = knowing;
   const DEGREE = Math.PI / 180;
-  const ON_THE_VERGE = 1e-7; // share of strength needed, this near to all of it
   const MOVED = 0.16; // largest displacement drawn, over r
   const FALLING = 2200, RESTING = 700, RETURNING = 500; // the motion shown, again and again [ms]
   const LINE_POINTS = 120;
@@ -14,7 +14,7 @@
   const PHONE = 600; // widest window that is a phone's [pixels]
   const STRIDES = 200; // of an arrow key across the map
   const FEW = 60; // most voussoirs of the slider; beyond is the continuous arch
-  const CLOSER = 1.6; // times the map is larger after a click on +
+  const { CLOSER } = zooming;
   const NEAR = 12; // pixels within which a result is meant
   const RANGES = { alpha: [1, 178], mu: [0.001, 1000], eta: [1e-6, 2], voussoirs: [3, 10000], at: [0, 1], lesson: [1, lesson.count],
     fill: [0, 1], place: [-0.99, 0.99], share: [0, 10] }; // of arches
@@ -31,30 +31,6 @@
   const still = matchMedia("(prefers-reduced-motion: reduce)");
   let playing = !still.matches;
   let moved = playing ? 0 : 1; // share of the motion shown
-
-  /* What is known of the arch looked at. */
-
-  /** Of the continuous arch, or of its voussoirs as built. */
-  function assess({ halfAngle, mu, eta, weight, voussoirs }, asBuilt) {
-    const critical = asBuilt
-      ? built.leastThickness(halfAngle, mu, voussoirs, weight)
-      : theory.leastThickness(halfAngle, mu, weight);
-    const balance = asBuilt
-      ? built.equilibrium(halfAngle, mu, eta, voussoirs, weight)
-      : theory.equilibrium(halfAngle, mu, eta, weight);
-    const verge = balance !== null && Math.abs(balance.share - 1) < ON_THE_VERGE;
-    const stands = verge || (critical.eta !== null && eta >= critical.eta);
-    // Thick enough and yet on the verge: it is friction that has nothing to spare.
-    const slides = verge && critical.eta !== null && eta > critical.eta * (1 + 1e-6);
-    const mode = slides ? "ss" : critical.mode;
-    const betaS = slides && !asBuilt ? theory.innerSliding(mu).betaS : critical.betaS;
-    let joints = slides ? balance.joints : critical.joints;
-    if (!asBuilt) joints = mechanism.activeJoints(mode, halfAngle, critical.betaR ?? 0, betaS ?? 0);
-    const friction = asBuilt
-      ? built.leastFriction(halfAngle, eta, voussoirs, weight)
-      : theory.leastFriction(halfAngle, eta, weight);
-    return { voussoirs: asBuilt ? voussoirs : null, critical, balance, verge, stands, slides, mode, betaS, joints, friction };
-  }
 
   /* Showing it. */
 
@@ -78,7 +54,7 @@
     const both = { continuous: assess(state, false), built: assess(state, true) };
     seen = state.asBuilt ? both.built : both.continuous;
     const bare = verdictOf(seen);
-    if (state.load || state.fill) seen = { ...seen, ...underLoad() };
+    if (state.load || state.fill) seen = { ...seen, ...underLoad(state) };
     const verdict = verdictOf(seen);
     const moves = (!seen.stands || seen.verge) && seen.joints.length > 0;
     put("verdict", words.headline(state, seen));
@@ -105,16 +81,6 @@
     document.body.classList.toggle("learning", state.lesson > 0);
     lesson.show(find("lesson"), state.lesson, look, learn);
     find("arch").setAttribute("aria-label", `${parameters()}. ${words.headline(state, seen)}. ${words.ofJoints(state, seen)}`);
-  }
-
-  const verdictOf = ({ verge, stands }) => (verge ? "undecided" : stands ? "stands" : "collapses");
-
-  /** What is known of the arch with what lies on it. */
-  function underLoad() {
-    const found = loaded.analyse(state, state.voussoirs);
-    const { margin } = found.rest;
-    const verge = Number.isNaN(margin) || Math.abs(margin) < ON_THE_VERGE;
-    return { loaded: found, verge, stands: margin > 0, joints: found.falls.joints };
   }
 
   const parameters = () =>
@@ -384,62 +350,10 @@
     return true;
   }
 
-  /** Zoom by the wheel, by two fingers and by a double click; shift by two fingers or the right button. */
-  function listenToZoom(map) {
-    const placeOf = (event) => {
-      const box = map.getBoundingClientRect();
-      return { x: event.clientX - box.left, y: event.clientY - box.top };
-    };
-    map.addEventListener("wheel", (event) => {
-      if (!pointAt(event).inside) return;
-      // At the ends the page scrolls.
-      if (zoom(2 ** (-event.deltaY / (event.deltaMode ? 10 : 300)), spotAt(placeOf(event)))) event.preventDefault();
-    }, { passive: false });
-    map.addEventListener("dblclick", (event) => {
-      if (pointAt(event).inside) zoom(event.shiftKey ? 1 / CLOSER : CLOSER, spotAt(placeOf(event)));
-    });
-    map.addEventListener("contextmenu", (event) => pointAt(event).inside && event.preventDefault());
-    const down = new Map();
-    let held = null;
-    /** Middle of the fingers or of the mouse, and how far they are apart. */
-    const grasp = () => {
-      const places = [...down.values()];
-      const [one, other] = [places[0], places.at(-1)];
-      return { x: (one.x + other.x) / 2, y: (one.y + other.y) / 2, apart: Math.hypot(one.x - other.x, one.y - other.y) };
-    };
-    const hold = () => {
-      const now = down.size ? grasp() : null;
-      held = now && { ...now, spot: spotAt(now) };
-    };
-    map.addEventListener("pointerdown", (event) => {
-      if (event.pointerType !== "touch" && event.button !== 2) return;
-      if (!pointAt(event).inside) return;
-      down.set(event.pointerId, placeOf(event));
-      map.setPointerCapture(event.pointerId);
-      hold();
-    });
-    map.addEventListener("pointermove", (event) => {
-      if (!down.has(event.pointerId)) return;
-      down.set(event.pointerId, placeOf(event));
-      if (event.pointerType === "touch" && down.size !== 2) return;
-      const now = grasp();
-      const spread = down.size === 2 && held.apart > 0 ? now.apart / held.apart : 1;
-      zoom(spread, held.spot, spotAt(now).shares);
-      held = { ...now, spot: held.spot };
-    });
-    for (const end of ["pointerup", "pointercancel"]) {
-      map.addEventListener(end, (event) => {
-        down.delete(event.pointerId);
-        hold();
-      });
-    }
-    return () => down.size > 1;
-  }
-
   function listenToMap() {
     const map = find("map");
     let [dragging, dragged] = [false, false];
-    const pinching = listenToZoom(map);
+    const pinching = zooming.listen(map, { isInside: (event) => pointAt(event).inside, spotAt, zoom });
     const pick = (event) => {
       const { mu, eta } = pointAt(event);
       choose(mu, eta);

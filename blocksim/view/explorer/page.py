@@ -41,7 +41,7 @@ HERE = Path(__file__).parent
 SCRIPTS = (
     "theory.js", "built.js", "mechanism.js", "svg.js", "map.js", "arch.js", "words.js",
     "address.js", "export.js", "lesson.js", "programme.js", "loaded.js", "blocks.js",
-    "ownpicture.js", "own.js", "page.js",
+    "ownpicture.js", "own.js", "knowing.js", "zooming.js", "page.js",
 )  # fmt: skip
 STRUCTURES: dict[str, Maker] = {
     "portal": Portal(
