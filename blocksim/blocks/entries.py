@@ -10,14 +10,15 @@ from pydantic import Field
 from blocksim.blocks.polygons import MOST_BLOCKS
 from blocksim.blocks.shaking import MOST_ROWS
 from blocksim.blocks.shapes import MOST_CORNERS
-from blocksim.blocks.vehicles import AXLE, MOST_AXLES
 from blocksim.common.checks import (
+    AXLE,
     COORDINATE,
     ETA,
     FACTOR,
     FORCE,
     INERTIA,
     LENGTH,
+    MOST_AXLES,
     PER_VOLUME,
     SMOOTH_OR_ROUGH,
     TURN,

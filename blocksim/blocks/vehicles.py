@@ -6,13 +6,9 @@ import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from blocksim.common.checks import COORDINATE, Range, require
+from blocksim.common.checks import AXLE, COORDINATE, MOST_AXLES, require
 from blocksim.common.errors import InputError, perhaps
 from blocksim.common.files import read_toml, shipped_files
-
-MOST_AXLES = 100
-AXLE = Range(low=0, high=1e6, unit="kN", above=True)
-"""Weight of one."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -138,6 +138,10 @@ PER_VOLUME = Range(low=1e-6, high=1e9, unit="N/m3")
 """Weight of a unit of volume."""
 WEIGHT = Range(low=1e-18, high=1e18, unit="N")
 FORCE = Range(low=-1e15, high=1e15, unit="N")
+AXLE = Range(low=0, high=1e6, unit="kN", above=True)
+"""Weight of an axle."""
+MOST_AXLES = 100
+"""Axles of a vehicle."""
 STRENGTH = Range(low=0, high=1e9, unit="Pa", above=True)
 """Compressive strength."""
 MASS = Range(low=1e-36, high=1e36, unit="kg")
