@@ -1,19 +1,18 @@
 """Check a proof that blocks stand or fall: `python verify.py FILE`.
 
-It needs the standard library alone, and shares no code with the rest. All arithmetic is of
-rational numbers. A decimal means the binary number next to it (IEEE 754, 64 bits), a text "p/q"
-that fraction. The file, or each of its list, has a `problem` (a structure file), a `claim`, and
+It needs the standard library alone, and shares no code with the rest. Arithmetic is rational: a
+decimal means the binary number next to it (IEEE 754, 64 bits), a text "p/q" that fraction. A
+file, or each of a list, has a `problem` (a structure file; z is 0 in the plane), a `claim`, and
 
-- "stands": `forces`, a pair a, b at both ends of each joint: the force a n + b t on block `b`,
-  and its opposite on block `a`. t leads from the first end to the second, n is t turned
-  clockwise by a right angle; a corner on a face has its `normal` n. Friction holds where a >= 0
-  and |b| <= friction a. Forces, weight and loads have to balance on each block.
-- "collapses": `rates`, the velocity x, y of the centre of each block and its rate of rotation.
-  No end of a joint may close, and each has to open at least by the friction times its slip.
-  Weights and loads have to do work. By virtual work no such forces balance them then.
+- "stands": `forces`, a vector at each point of each joint, on its block `b`; the opposite acts
+  on `a`. None pulls, or leaves the cone of friction. Forces, weight and loads have to balance.
+- "collapses": `rates`, the velocity of the centre of each block, and its rotation. No point of
+  a joint may close, and each has to open at least by the friction times its slip. Weights and
+  loads have to do work. By virtual work no such forces balance them then.
 
-Loads may differ from those given by `tolerance`, over the weight of each block (0: not at all):
-the forces are for some such loads; no forces balance any of them.
+The `normal` of a joint leads from `a` to `b`; without, it is the way between its two `ends`,
+turned clockwise by a right angle. Loads may differ from those given by `tolerance`, over the
+weight of each block: the forces are for some such loads; no forces balance any of them.
 """
 
 from __future__ import annotations
@@ -23,10 +22,11 @@ import json
 import re
 import sys
 from fractions import Fraction
+from operator import mul
 from pathlib import Path
 from typing import Any
 
-FORMAT = "blocksim proof 1"
+FORMAT = "blocksim proof 2"
 NOTHING = Fraction(0)
 Vector = list[Fraction]
 
@@ -44,15 +44,21 @@ def number(value: Any) -> Fraction:
     return Fraction(value)
 
 
-def vector(values: Any, size: int = 2) -> Vector:
-    """Read so many numbers."""
-    require(type(values) is list and len(values) == size, f"{values!r} is no vector")
-    return [number(value) for value in values]
+def vector(values: Any) -> Vector:
+    """Read two or three numbers."""
+    require(type(values) is list and len(values) in {2, 3}, f"{values!r} is no vector")
+    return [*map(number, values), NOTHING][:3]
 
 
 def minus(one: Vector, other: Vector) -> Vector:
     """Subtract vectors."""
-    return [one[0] - other[0], one[1] - other[1]]
+    return [p - q for p, q in zip(one, other, strict=True)]
+
+
+def cross(one: Vector, other: Vector) -> Vector:
+    """Multiply vectors to a vector."""
+    (a, b, c), (p, q, r) = one, other
+    return [b * r - c * q, c * p - a * r, a * q - b * p]
 
 
 def seal(table: dict[str, Any]) -> str:
@@ -63,17 +69,16 @@ def seal(table: dict[str, Any]) -> str:
 
 def plus(total: Vector, force: Vector, arm: Vector, times: Fraction | int = 1) -> Vector:
     """Add a force, so many times, and its moment about a point."""
-    more = (*force, arm[0] * force[1] - arm[1] * force[0])
+    more = (*force, *cross(arm, force))
     return [one + times * other for one, other in zip(total, more, strict=True)]
 
 
 def loads(problem: Any, blocks: Any, centres: dict[str, Vector]) -> dict[str, Vector]:
-    """Sum weight and loads on each block: x, y, and the moment about its centre."""
-    found = {name: [NOTHING] * 3 for name in blocks}
+    """Sum weight and loads on each block: the force, and the moment about its centre."""
+    found = {name: [NOTHING] * 6 for name in blocks}
     for factor, key in ((Fraction(1), "dead"), (number(problem["load"]), "live")):
         for load in problem[key]:
-            whole = "body" in load
-            force = vector(load["body"][:2] if whole else load["force"])
+            whole, force = "body" in load, vector(load.get("body") or load["force"])
             for name in load.get("blocks", blocks) if whole else [load["block"]]:
                 times = factor * (number(blocks[name]["weight"]) if whole else 1)
                 point = vector(load["point"]) if "point" in load else centres[name]
@@ -91,45 +96,40 @@ def verify(table: Any) -> str:
     blocks = {each["id"]: each for each in problem["blocks"] if not each.get("fixed")}
     require(len(fixed) + len(blocks) == len(problem["blocks"]), "blocks share a name")
     centres = {name: vector(block["centre"]) for name, block in blocks.items()}
-    left = loads(problem, blocks, centres)
-    stands, still, work = {"stands": True, "collapses": False}[claim], [NOTHING] * 3, NOTHING
+    stands, still, work = {"stands": True, "collapses": False}[claim], [NOTHING] * 6, NOTHING
     given = table["forces" if stands else "rates"]
     require(len(given) == len(problem["joints"] if stands else blocks) > 0, "some are missing")
-    rates = {} if stands else {name: vector(given[name], 3) for name in blocks}
+    left = dict.fromkeys(fixed, still) | loads(problem, blocks, centres)
+    rates = dict.fromkeys(left, still)
+    rates |= {} if stands else {k: [*vector(given[k][0]), *vector(given[k][1])] for k in blocks}
     for at, joint in enumerate(problem["joints"]):
-        before, after = joint["a"], joint["b"]
-        require({before, after} <= fixed | blocks.keys(), f"joint {at}: a block is missing")
-        ends = [vector(point) for point in joint["ends"]]
-        t = minus(ends[1], ends[0]) if len(ends) == 2 else []
-        n = [t[1], -t[0]] if t else vector(joint["normal"])
-        t = t or [-n[1], n[0]]
+        sides = joint["b"], joint["a"]
+        points = [vector(point) for point in joint["points" if "points" in joint else "ends"]]
+        x, y, _ = minus(points[-1], points[0])
+        n = vector(joint["normal"]) if "normal" in joint else [y, -x, NOTHING]
         mu = joint.get("friction", problem["friction"])
-        rough, mu = mu == "inf", NOTHING if mu == "inf" else number(mu)
-        require(mu >= 0, f"joint {at}: friction is below 0")
-        for point, force in zip((ends * 2)[:2], given[at] if stands else (0, 0), strict=True):
-            arms = {name: minus(point, centres.get(name, point)) for name in (before, after)}
-            if stands:
-                a, b = vector(force)
-                require(a >= 0, f"joint {at}: a force pulls")
-                require(rough or abs(b) <= mu * a, f"joint {at}: a force exceeds friction")
-                push = [a * n[0] + b * t[0], a * n[1] + b * t[1]]
-                for name, sign in ((before, -1), (after, 1)):
-                    left[name] = plus(left.get(name, still), push, arms[name], sign)
-                continue
-            moved = [(rates.get(name, still), arms[name]) for name in (after, before)]
-            way = minus(*([x - turn * q, y + turn * p] for (x, y, turn), (p, q) in moved))
-            opens, slips = (way[0] * each[0] + way[1] * each[1] for each in (n, t))
-            lawful = mu * abs(slips) <= opens and not (rough and slips)
-            require(lawful, f"joint {at}: it closes, or slips without opening")
+        p, q = (1, 0) if mu == "inf" else (number(mu), 1)
+        require(any(n) and p >= 0, f"joint {at}: no normal, or friction below 0")
+        # Forces lie in the cone of friction, and motions in its dual.
+        p, q = (p, q) if stands else (q, p)
+        moved = [rates[name] for name in sides]
+        for point, force in zip(points, given[at] if stands else points, strict=True):
+            arms = [minus(point, centres.get(name, point)) for name in sides]
+            b, a = (minus(v[:3], cross(arm, v[3:])) for v, arm in zip(moved, arms, strict=True))
+            way = vector(force) if stands else minus(b, a)
+            along, side = sum(map(mul, way, n)), cross(way, n)
+            held = q**2 * sum(map(mul, side, side)) <= (p * along) ** 2
+            require(along >= 0 and held, f"joint {at}: it pulls, closes, or exceeds friction")
+            for name, arm, sign in zip(sides, arms, (1, -1), strict=True):
+                left[name] = plus(left[name], way, arm, sign if stands else 0)
     for name, block in blocks.items():
-        arms = [minus(vector(p), centres[name]) for part in block["polygons"] for p in part]
-        allowed = slack * number(block["weight"])
-        far = allowed * max(abs(x) + abs(y) for x, y in arms)
-        require(far >= 0, f"block {name}: its weight is below 0")
-        for at, most in enumerate((allowed, allowed, far)):
-            over, rate = left[name][at], rates.get(name, still)[at]
+        corners = block.get("polygons") or block.get("polyhedra") or [block["vertices"]]
+        arms = [minus(vector(p), centres[name]) for part in corners for p in part]
+        few = slack * max(number(block["weight"]), NOTHING)
+        far = few * max(sum(map(abs, arm)) for arm in arms)
+        for most, over, way in zip([few] * 3 + [far] * 3, left[name], rates[name], strict=True):
             require(not stands or abs(over) <= most, f"block {name}: forces do not balance")
-            work += over * rate - most * abs(rate)
+            work += over * way - most * abs(way)
     require(stands or work > 0, "loads do no work")
     return f"proved: {claim}, {len(blocks)} blocks and {len(problem['joints'])} joints"
 

@@ -54,8 +54,7 @@ def by_name(values: list[Question], every: int = 1) -> Any:
 def test_answers_next_to_the_limit_are_proved(asked: Question) -> None:
     answer = check(asked.problem, method="limit")
     assert answer.verdict.value == ("stands" if asked.stands else "collapses")
-    # In space verdicts have certificates in floating-point numbers.
-    assert spatial(asked) or answer.proved
+    assert answer.proved
 
 
 @by_name(

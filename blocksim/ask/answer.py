@@ -141,8 +141,8 @@ class Check(Shown, Generic[Blocks]):
 
     @cached_property
     def proof(self) -> Proof | None:
-        """The proof of the verdict by limit analysis; None where undecided, and in space."""
-        if self.method != "limit" or self.problem.in_space:
+        """The proof of the verdict by limit analysis; None where there is none."""
+        if self.method != "limit":
             return None
         if self.needed is not None:
             # Proofs are of rigid blocks, which stand.

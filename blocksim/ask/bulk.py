@@ -61,7 +61,8 @@ class Told:
         in space how hard each corner of each face presses, over the share of the lighter
         block's weight. At most 1; -inf where no forces would do. None of kinds without one.
     proved : bool
-        Whether the verdict is proved in rational numbers, as of `check`: never in space.
+        Whether the verdict is proved in rational numbers, as of `check`; those of towers in
+        space are told without.
     title : str
         What the structure is called.
     error : str or None

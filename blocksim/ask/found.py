@@ -155,8 +155,8 @@ def by_family(family: Family[Any], within: Within | None, given: Taken) -> Found
     ends = (found.falls, found.stands)
     lower, upper = ends if family.stands == "high" else ends[::-1]
     intervals = tried_ends(family, found, ask) if known else None
-    # Proofs are of rigid blocks in the plane.
-    proves = chosen.name == "limit" and not probe.in_space and probe.strength is None
+    # Proofs are of rigid blocks.
+    proves = chosen.name == "limit" and probe.strength is None
     return Found(
         found,
         chosen,

@@ -21,6 +21,7 @@ from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Move, Problem
 from blocksim.blocks.rows import column
 from blocksim.blocks.shaking import shaking_of, shaking_record
+from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.common.checks import endless_text, require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.tables import as_said
@@ -156,7 +157,8 @@ def _has_weight(body: Body) -> bool:
     return body.fixed or body.weight is not None
 
 
-def _load_record(load: Load, names: Sequence[str]) -> list[dict[str, Any]]:
+def load_record(load: Load, names: Sequence[str]) -> list[dict[str, Any]]:
+    """Return a load as entries of a structure file."""
     blocks = [names[index] for index in load.blocks]
     if load.per_weight:
         return [{"body": load.force.tolist(), "blocks": blocks}]
@@ -170,7 +172,7 @@ def structure_record(problem: Problem) -> dict[str, Any]:
     A support that is not known as a body gets one: a flat triangle behind its joint.
     """
     assembly = problem.assembly
-    names, beds = _ids(assembly)
+    names, beds = ids_of(assembly)
     grounds = {
         f"ground {index}": _ground(joint)
         for index, joint in enumerate(assembly.joints)
@@ -211,15 +213,15 @@ def structure_record(problem: Problem) -> dict[str, Any]:
         ],
         "dead": [
             {"body": problem.gravity.tolist()},
-            *(each for load in problem.dead for each in _load_record(load, names)),
+            *(each for load in problem.dead for each in load_record(load, names)),
         ],
-        "live": [each for load in problem.live for each in _load_record(load, names)],
+        "live": [each for load in problem.live for each in load_record(load, names)],
         "move": moves,
         **({} if problem.shaking is None else {"shake": shaking_record(problem.shaking)}),
     }
 
 
-def _ids(assembly: Assembly) -> tuple[list[str], list[str]]:
+def ids_of(assembly: Assembly | SpatialAssembly) -> tuple[list[str], list[str]]:
     """Return the ids of blocks and of supports: their names, where each has its own."""
     blocks = [block.name for block in assembly.blocks]
     beds = [each.name for each in assembly.supports]

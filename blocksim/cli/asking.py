@@ -85,7 +85,7 @@ def check(
         check_each(scene, given, loading, alone)
     problem = anything_asked(scene, given, loading, spatial=spatial, thick=True)
     if problem.in_space:
-        refuse({"joint": joint, "must_rest": must_rest, "proof": proof})
+        refuse({"joint": joint, "must_rest": must_rest})
     at = None
     if joint is not None:
         names = joint_names(problem.assembly)
@@ -149,7 +149,7 @@ def bracket(
         sought=sought,
     )  # fmt: skip
     if problem.in_space:
-        refuse({**asdict(crossed), "proof": proof, "push": push})
+        refuse({**asdict(crossed), "push": push})
     elif crosses:
         usual = {"--over": over in {None, "load"}, "--within": within is None,
                  "--method": method in {"auto", "limit"}, "--set": settings is None,

@@ -6,9 +6,11 @@ import math
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
 from blocksim.blocks.rows import column
 
@@ -17,57 +19,69 @@ SLACK = Fraction(1, 10**12)
 NOTHING = Fraction(0)
 Number = int | Fraction
 Vector = list[Fraction]
-Point = tuple[int, int]
+Point = tuple[int, ...]
 
 
 class Exact:
-    """A problem in whole and rational numbers.
+    """A problem in whole and rational numbers, in the plane or in space.
 
     Lengths are whole numbers of `grain` metres, forces of `force` newtons: powers of two of
     which all that is given are multiples.
+
+    It has:
+    `sides`, (joints, 2): Blocks before and after each joint, `SUPPORT` for the ground.
+    `ends`, `normals`, `friction`: Of each joint its points, a normal of any length, and its
+        friction coefficient, None where nothing bounds it. In the plane a joint has two points,
+        which are the same at a corner.
+    `centres`, `weights`: Of each block; weights in newtons.
+    `pull`: Force and moment on each block.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem[Any]) -> None:
         assembly, joints = problem.assembly, problem.assembly.joints
-        self.problem = problem
+        self.problem, self.axes = problem, int(assembly.dimensions)
         self.sides: list[list[int]] = assembly.sides.T.tolist()
-        is_corner = assembly.joint_arrays.is_corner.tolist()
-        ends = np.array([column(joints, "inner"), column(joints, "outer")])
-        across = np.array([(0.0, 0.0) if each is None else each.tolist()
-                           for each in column(joints, "across")])  # fmt: skip
         acting = ((1.0, problem.dead), (problem.load, problem.live))
-        points = [load.point for _, loads in acting for load in loads if load.point is not None]
-        values = [assembly.centres, ends, across, *points]
+        at = [load.point for _, loads in acting for load in loads if load.point is not None]
+        ends, counts = _ends(problem)
+        values = [assembly.centres, ends, *at, *([] if problem.in_space else [_across(joints)])]
         self.grain, whole = whole_numbers(
             np.concatenate([each.ravel() for each in values]).tolist()
         )
-        pairs = list(zip(whole[::2], whole[1::2], strict=True))
-        blocks, count = len(assembly.blocks), len(self.sides)
-        self.centres = pairs[:blocks]
-        first, second = pairs[blocks : blocks + count], pairs[blocks + count :][:count]
-        self.ends = list(zip(first, second, strict=True))
-        self.normals: list[Point] = []
-        for corner, one, other, up in zip(
-            is_corner, first, second, pairs[blocks + 2 * count :][:count], strict=True
-        ):
-            self.normals.append(up if corner else (other[1] - one[1], one[0] - other[0]))
+        points: list[Point] = list(zip(*(whole[axis :: self.axes] for axis in range(self.axes)),
+                                       strict=True))  # fmt: skip
+        self.centres, points = points[: len(assembly.blocks)], points[len(assembly.blocks) :]
+        last = np.cumsum(counts).tolist()
+        self.ends = [points[one:other] for one, other in zip([0, *last], last, strict=False)]
+        places = iter(points[len(ends) :][: len(at)])
+        self.normals = self._normals(points[len(ends) + len(at) :])
         self.friction: list[Fraction | None] = [
             None if each == math.inf else Fraction(each) for each in problem.friction.tolist()
         ]
-        masses: list[float] = np.asarray(column(assembly.blocks, "mass")).tolist()
-        self.weights = [Fraction(mass * STANDARD_GRAVITY) for mass in masses]
-        x, y = (Fraction(each) for each in problem.gravity[:2].tolist())
-        pull = [[weight * x, weight * y, NOTHING] for weight in self.weights]
-        places = iter(pairs[blocks + 3 * count :])
+        self.weights = [Fraction(each) for each in _weights(problem)]
+        down = [Fraction(each) for each in problem.gravity[: self.axes].tolist()]
+        turns = [NOTHING] * len(moment(down, down))
+        pull = [[*(weight * way for way in down), *turns] for weight in self.weights]
         for factor, loads in acting:
             for load in loads:
-                at = None if load.point is None else next(places)
-                self._load(pull, Fraction(factor), load, at)
+                place = None if load.point is None else next(places)
+                self._load(pull, Fraction(factor), load, place)
         finest = max(each.denominator for wrench in pull for each in wrench)
         self.force = Fraction(1, finest)
         self.pull = [
             [each.numerator * (finest // each.denominator) for each in wrench]
             for wrench in pull
+        ]
+
+    def _normals(self, across: Sequence[Point]) -> list[Point]:
+        """Return a normal of each joint; in the plane its ends tell it, but at a corner."""
+        if self.problem.in_space:
+            given = (each.normal.tolist() for each in self.problem.assembly.joints)
+            return [tuple(whole_numbers(each)[1]) for each in given]
+        is_corner: list[bool] = self.problem.assembly.joint_arrays.is_corner.tolist()
+        return [
+            up if corner else (other[1] - one[1], one[0] - other[0])
+            for corner, (one, other), up in zip(is_corner, self.ends, across, strict=True)
         ]
 
     def _load(
@@ -77,31 +91,49 @@ class Exact:
         force = [Fraction(each) for each in load.force.tolist()]
         for block in load.blocks:
             times = factor * (self.weights[block] if load.per_weight else 1)
-            x, y, sums = times * force[0], times * force[1], pull[block]
-            sums[0] += x
-            sums[1] += y
+            acts = [times * each for each in force]
             if point is not None and not load.per_weight:
-                cx, cy = self.centres[block]
-                sums[2] += (point[0] - cx) * y - (point[1] - cy) * x
+                acts += moment(apart(point, self.centres[block]), acts)
+            for at, each in enumerate(acts):
+                pull[block][at] += each
 
     @cached_property
     def allowed(self) -> list[list[int]]:
         """What may be left on each block, in units of force, and of that times the grain."""
-        assembly = self.problem.assembly
-        outlines, pieces = (column(assembly.blocks, name) for name in ("vertices", "parts"))
-        shapes = [np.concatenate(parts) if parts else outline
-                  for outline, parts in zip(outlines, pieces, strict=True)]  # fmt: skip
+        centres = self.problem.assembly.centres
+        shapes = _corners(self.problem)
         count = np.array([len(shape) for shape in shapes])
-        arms = np.concatenate(shapes) - np.repeat(assembly.centres, count, axis=0)
+        arms = np.concatenate(shapes) - np.repeat(centres, count, axis=0)
         reach = np.maximum.reduceat(np.abs(arms).sum(axis=1), count.cumsum() - count)
         found: list[list[int]] = []
+        turns = len(self.pull[0]) - self.axes
         for weight, far in zip(self.weights, reach.tolist(), strict=True):
             above, below = far.as_integer_ratio()
             most = weight.numerator * self.force.denominator * SLACK.numerator
             least = weight.denominator * SLACK.denominator
             turn = most * above * self.grain.denominator // (least * below)
-            found.append([most // least, most // least, turn])
+            found.append([most // least] * self.axes + [turn] * turns)
         return found
+
+
+def apart(one: Sequence[Any], other: Sequence[Any]) -> list[Any]:
+    """Return the way from another point."""
+    return [p - q for p, q in zip(one, other, strict=True)]
+
+
+def moment(arm: Sequence[Any], force: Sequence[Any]) -> list[Any]:
+    """Return the moment of a force: one number in the plane, a vector in space."""
+    if len(arm) == 2:
+        return [arm[0] * force[1] - arm[1] * force[0]]
+    (a, b, c), (p, q, r) = arm, force
+    return [b * r - c * q, c * p - a * r, a * q - b * p]
+
+
+def spun(turn: Sequence[Any], arm: Sequence[Any]) -> list[Any]:
+    """Return the velocity at the end of an arm by a rotation."""
+    if len(arm) == 2:
+        return [-turn[0] * arm[1], turn[0] * arm[0]]
+    return moment(turn, arm)
 
 
 def whole_numbers(values: Sequence[float]) -> tuple[Fraction, list[int]]:
@@ -109,3 +141,37 @@ def whole_numbers(values: Sequence[float]) -> tuple[Fraction, list[int]]:
     ratios = [each.as_integer_ratio() for each in values]
     finest = max((each for _, each in ratios), default=1)
     return Fraction(1, finest), [above * (finest // below) for above, below in ratios]
+
+
+def _ends(problem: Problem[Any]) -> tuple[Array, Array]:
+    """Return the points of all joints, and how many each has."""
+    joints = problem.assembly.joints
+    if problem.in_space:
+        counts = np.array([len(each.points) for each in joints], dtype=int)
+        return np.concatenate([np.zeros((0, 3)), *(each.points for each in joints)]), counts
+    ends = np.array([column(joints, "inner"), column(joints, "outer")])
+    return ends.swapaxes(0, 1).reshape(-1, 2), np.full(len(joints), 2)
+
+
+def _across(joints: Sequence[Any]) -> Array:
+    """Return the normals of corners in the plane, (joints, 2)."""
+    return np.array([(0.0, 0.0) if each is None else each.tolist()
+                     for each in column(joints, "across")])  # fmt: skip
+
+
+def _weights(problem: Problem[Any]) -> list[float]:
+    """Return the weights of blocks [N], as files say them."""
+    if problem.in_space:
+        return problem.assembly.weights.tolist()
+    masses: list[float] = np.asarray(column(problem.assembly.blocks, "mass")).tolist()
+    return [mass * STANDARD_GRAVITY for mass in masses]
+
+
+def _corners(problem: Problem[Any]) -> list[Array]:
+    """Return the corners of each block, (k, axes)."""
+    blocks = problem.assembly.blocks
+    if problem.in_space:
+        return [np.concatenate([hull.corners for hull in block.hulls]) for block in blocks]
+    outlines, pieces = (column(blocks, name) for name in ("vertices", "parts"))
+    return [np.concatenate(parts) if parts else outline
+            for outline, parts in zip(outlines, pieces, strict=True)]  # fmt: skip

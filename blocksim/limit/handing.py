@@ -27,7 +27,7 @@ def handed_on(
     parts: list[Number] = [*whole]
     left: list[list[Number]] = [[*wrench] for wrench in unbalanced]
     room = _room(exact, forces)
-    for block, joints in reversed(_ways(exact, room)):
+    for block, joints in reversed(ways(exact, room)):
         if not any(left[block]):
             continue
         (x, y), far = exact.ends[joints[0]]
@@ -123,16 +123,19 @@ def _room(exact: Exact, forces: Array) -> Array:
     return np.maximum(room.min(axis=1), 0.0)
 
 
-def _ways(exact: Exact, room: Array) -> list[tuple[int, list[int]]]:
+def ways(exact: Exact, room: Array) -> list[tuple[int, list[int]]]:
     """Return each block after those on its widest way to a support, and its joints with them.
 
-    The widest joint is the first; corners come last.
+    The widest joint is the first. Those come last that cannot bear every force and moment:
+    corners, and in space also edges.
+
+    `room`, (joints,): How wide each joint is.
     """
     at: dict[int, list[int]] = {}
     for joint, sides in enumerate(exact.sides):
         for side in sides:
             at.setdefault(side, []).append(joint)
-    seen, ways = {SUPPORT}, list[tuple[int, list[int]]]()
+    seen, found = {SUPPORT}, list[tuple[int, list[int]]]()
     heap = list[tuple[bool, float, int, int]]()
 
     def reach(block: int) -> None:
@@ -140,8 +143,8 @@ def _ways(exact: Exact, room: Array) -> list[tuple[int, list[int]]]:
             one, other = exact.sides[joint]
             far = other if one == block else one
             if far not in seen:
-                corner = exact.ends[joint][0] == exact.ends[joint][1]
-                heapq.heappush(heap, (corner, -float(room[joint]), joint, far))
+                narrow = len({*exact.ends[joint]}) < exact.axes
+                heapq.heappush(heap, (narrow, -float(room[joint]), joint, far))
 
     reach(SUPPORT)
     while heap:
@@ -151,9 +154,9 @@ def _ways(exact: Exact, room: Array) -> list[tuple[int, list[int]]]:
             others = [
                 each for each in at[block] if each != joint and seen >= {*exact.sides[each]}
             ]
-            ways.append((block, [joint, *others]))
+            found.append((block, [joint, *others]))
             reach(block)
-    return ways
+    return found
 
 
 def _by_largest(row: Sequence[int]) -> list[float]:

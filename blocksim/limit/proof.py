@@ -2,7 +2,8 @@
 
 Doubles are taken as the rational numbers they are, so what is proved is proved of the problem
 as it is stored: corners, centres, weights, friction, gravity and loads. A joint's tangent is
-the vector between its ends, its normal the same turned by a right angle: no root is taken.
+the vector between its ends, its normal the same turned by a right angle: no root is taken. In
+space `space.proof` does the same.
 
 - *Stands*: forces of the linear programme lie well within their cones, but balance to 1e-10
   only. What is left on each block is handed on, exactly, through the strongest way of joints
@@ -48,16 +49,16 @@ class Proof:
     `tolerance`: Loads that differ from those given by no more are proved as well (`collapses`)
         or instead (`stands`, where it is 0 but for structures that touch their limit): force
         over the weight of each block, moment over that times its reach.
-    `forces`: a, b at both ends of each joint: the force a n + b t, where t leads from its first
-        end to the second [grains] and n is t turned clockwise; empty where it falls.
+    `forces`: At each point of each joint, on the block after it; empty where it falls.
     `unit`: Of the forces [N].
-    `rates`: x, y of its centre and rotation, in any unit; empty where it stands.
+    `rates`: Velocity of the centre of each block, and its rotation, in any unit; empty where it
+        stands.
     """
 
     exact: Exact
     claim: Literal["stands", "collapses"]
     tolerance: Fraction = NOTHING
-    forces: Sequence[Number] = ()
+    forces: Sequence[Sequence[Sequence[Number]]] = ()
     unit: Fraction = NOTHING
     rates: list[list[int]] = field(default_factory=list[list[int]])
 
@@ -65,32 +66,37 @@ class Proof:
 def proof_record(proof: Proof) -> dict[str, Any]:
     """Return a proof as the file that `blocksim.verify` checks."""
     # Imported here: few ask for the file, and reading files takes long to load.
+    from blocksim.blocks.space.files import solids_record
     from blocksim.blocks.structure import structure_record
 
     exact = proof.exact
+    in_space = exact.problem.in_space
+    written = solids_record(exact.problem) if in_space else structure_record(exact.problem)
     table: dict[str, Any] = {
         "format": FORMAT,
         "version": __version__,
         "claim": proof.claim,
         "tolerance": str(proof.tolerance),
-        "problem": structure_record(exact.problem),
+        "problem": written,
     }
     if proof.claim == "stands":
-        # In newtons over metres, as joints are vectors of metres.
-        unit = proof.unit / exact.grain
-        parts = [str(each * unit) for each in proof.forces]
-        table["forces"] = [
-            [parts[at : at + 2], parts[at + 2 : at + 4]] for at in range(0, len(parts), 4)
-        ]
+        table["forces"] = [[[str(part * proof.unit) for part in force] for force in joint]
+                           for joint in proof.forces]  # fmt: skip
     else:
         names = [each["id"] for each in table["problem"]["blocks"] if not each.get("fixed")]
         common = math.gcd(*(each for rate in proof.rates for each in rate))
         grains = exact.grain.denominator
         table["rates"] = {
-            name: [str(x // common), str(y // common), str(turn // common * grains)]
-            for name, (x, y, turn) in zip(names, proof.rates, strict=True)
+            name: _halves([each // common for each in rate], exact.axes, grains)
+            for name, rate in zip(names, proof.rates, strict=True)
         }
     return {**table, "sha256": seal(table)}
+
+
+def _halves(rate: Sequence[int], axes: int, grains: int) -> list[list[str]]:
+    """Write a velocity and a rotation as two vectors; in the plane it is about z."""
+    turn = [str(each * grains) for each in rate[axes:]]
+    return [[str(each) for each in rate[:axes]], turn if len(turn) > 1 else ["0", "0", *turn]]
 
 
 def proof_of_rest(exact: Exact, forces: Array) -> Proof | None:
@@ -116,12 +122,13 @@ def proof_of_rest(exact: Exact, forces: Array) -> Proof | None:
     left = _left(exact, whole, each)
     handed = handed_on(exact, whole, left, forces)
     if handed is not None and _within(exact, handed):
-        return Proof(exact=exact, claim="stands", forces=handed, unit=unit)
+        return Proof(exact=exact, claim="stands", forces=_vectors(exact, handed), unit=unit)
     for wrench, allowed in zip(left, exact.allowed, strict=True):
         # Less than is allowed: how far a block reaches is rounded here.
         if any(2 * abs(w) > each * most for w, most in zip(wrench, allowed, strict=True)):
             return None
-    return Proof(exact=exact, claim="stands", tolerance=SLACK, forces=whole, unit=unit)
+    found = _vectors(exact, whole)
+    return Proof(exact=exact, claim="stands", tolerance=SLACK, forces=found, unit=unit)
 
 
 def proof_of_fall(
@@ -184,7 +191,7 @@ def proof_in_rationals(exact: Exact, weights: Array, owner: Sequence[int]) -> Pr
     sizes = [abs(p) + abs(q) for p, q in exact.normals for _ in range(4)]
     if any(abs(each) * size > most for each, size in zip(forces, sizes, strict=True)):
         return None
-    return Proof(exact=exact, claim="stands", forces=forces, unit=exact.force)
+    return Proof(exact=exact, claim="stands", forces=_vectors(exact, forces), unit=exact.force)
 
 
 def _of_motion(exact: Exact, rates: list[list[int]]) -> Proof | None:
@@ -213,6 +220,23 @@ def _left(exact: Exact, whole: list[int], each: int) -> list[list[int]]:
                     wrench[1] += sign * v
                     wrench[2] += sign * ((x - cx) * v - (y - cy) * u)
     return sums
+
+
+def _vectors(exact: Exact, parts: Sequence[Number]) -> list[list[list[Number]]]:
+    """Return forces at the points of joints, of their parts along normals and tangents.
+
+    `parts`: a, b at both ends of each joint: the force a n + b t, where n is its normal, and t
+        that turned counter-clockwise by a right angle.
+    """
+    found: list[list[list[Number]]] = []
+    for at, ((p, q), ends) in enumerate(zip(exact.normals, exact.ends, strict=True)):
+        a, b, c, d = parts[4 * at : 4 * at + 4]
+        if ends[0] == ends[1]:
+            a, b = a + c, b + d
+        force: list[Number] = [a * p - b * q, a * q + b * p]
+        other: list[Number] = [c * p - d * q, c * q + d * p]
+        found.append([force] if ends[0] == ends[1] else [force, other])
+    return found
 
 
 def _within(exact: Exact, parts: Sequence[Number]) -> bool:

@@ -19,7 +19,7 @@ import numpy as np
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.common.errors import Unsolved
 from blocksim.common.later import Library, sparse
-from blocksim.limit.exact import NOTHING, Exact, Point
+from blocksim.limit.exact import NOTHING, Exact, Point, apart, spun
 from blocksim.limit.linear import LinearProgramme
 
 if TYPE_CHECKING:
@@ -271,15 +271,17 @@ def as_bodies(
 ) -> list[list[int]]:
     """Return the motion of each block with the first one of its body.
 
-    `rates`, (blocks,): x, y and rotation of each.
+    `rates`, (blocks,): Velocity and rotation of each.
     `owner`: As of `Bodies`.
     """
     first, found = dict[int, int](), list[list[int]]()
-    for block, (body, (cx, cy)) in enumerate(zip(owner, exact.centres, strict=True)):
+    for block, (body, centre) in enumerate(zip(owner, exact.centres, strict=True)):
         at = first.setdefault(body, block)
-        (px, py), (x, y, turn) = exact.centres[at], rates[at]
-        moved = [x - turn * (cy - py), y + turn * (cx - px), turn]
-        found.append([0] * PLANAR if body == SUPPORT else moved)
+        rate = rates[at]
+        velocity, turn = rate[: exact.axes], rate[exact.axes :]
+        by_turn = spun(turn, apart(centre, exact.centres[at]))
+        moved = [p + q for p, q in zip(velocity, by_turn, strict=True)]
+        found.append([0] * len(rate) if body == SUPPORT else [*moved, *turn])
     return found
 
 

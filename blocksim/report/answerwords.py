@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 SIX = 6
 """Digits of ratios, where no more are known."""
-NONE_IN_SPACE = "none: in space forces and motions are checked in floating-point numbers"
+NONE_IN_SPACE = "none was found: forces and motion are checked in floating-point numbers"
 ASIDE = {"method": "method", "settings": "method", "reduction": "method", "note": "note"}
 """Evidence that is told at the end, and what its line is called."""
 SHOWN = 8
@@ -147,8 +147,6 @@ def aside_lines(evidence: Sequence[Evidence]) -> list[str]:
 
 def ends_proved_words(answer: Bracket[Any]) -> str:
     """Say whether it is proved that it falls to one side of each change, and stands beyond."""
-    if is_spatial(answer):
-        return NONE_IN_SPACE
     if answer.problem.strength is not None:
         return UNPROVED
     if not answer.changes:

@@ -11,6 +11,7 @@ from typing import Annotated, Any, cast
 
 import numpy as np
 
+from blocksim.blocks.assembly import SUPPORT
 from blocksim.blocks.entries import (
     Coordinate,
     Fixed,
@@ -27,7 +28,9 @@ from blocksim.blocks.loads import LoadsOf, acting_of, given_joints, named_blocks
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import FaceJoint, Solid, SpatialAssembly
 from blocksim.blocks.space.joining import MOST_SOLIDS, assembly_in_space
-from blocksim.common.checks import WEIGHT, require
+from blocksim.blocks.space.polyhedron import frame
+from blocksim.blocks.structure import ids_of, load_record
+from blocksim.common.checks import WEIGHT, endless_text, require
 from blocksim.common.tables import Written, as_said
 
 MOST_CORNERS = 1000
@@ -196,3 +199,57 @@ def _joints(written: SpatialFile, solids: Sequence[Solid]) -> list[FaceJoint] | 
             )
         )
     return joints
+
+
+def solids_record(problem: Problem[SpatialAssembly]) -> dict[str, Any]:
+    """Write a problem as a structure file in space does; `problem_in_space` reads it back.
+
+    A support that is not known as a body gets one: a tetrahedron behind its joint.
+    """
+    assembly = problem.assembly
+    names, beds = ids_of(assembly)
+    unknown = {at: f"ground {at}" for at, joint in enumerate(assembly.joints)
+               if joint.support is None and SUPPORT in (joint.before, joint.after)}  # fmt: skip
+    solids = [(names, assembly.blocks, False), (beds, assembly.supports, True)]
+    blocks: list[dict[str, Any]] = [
+        {
+            "id": name,
+            "polyhedra": [hull.corners.tolist() for hull in block.hulls],
+            **({"fixed": True} if fixed else {"weight": block.weight}),
+            "centre": block.centre.tolist(),
+        }
+        for ids, solid, fixed in solids
+        for name, block in zip(ids, solid, strict=True)
+    ]
+    blocks += [{"id": name, "vertices": _ground(assembly.joints[at]), "fixed": True}
+               for at, name in unknown.items()]  # fmt: skip
+    joints: list[dict[str, Any]] = []
+    for at, joint in enumerate(assembly.joints):
+        bed = unknown.get(at, "") if joint.support is None else beds[joint.support]
+        a, b = (bed if side == SUPPORT else names[side] for side in (joint.before, joint.after))
+        own = {} if joint.friction is None else {"friction": endless_text(joint.friction)}
+        corners, normal = joint.points.tolist(), joint.normal.tolist()
+        joints.append({"a": a, "b": b, "points": corners, "normal": normal, **own})
+    return {
+        "title": problem.title,
+        "source": problem.source,
+        "friction": endless_text(problem.mu),
+        "load": problem.load,
+        "blocks": blocks,
+        "joints": joints,
+        "dead": [
+            {"body": problem.gravity.tolist()},
+            *(each for load in problem.dead for each in load_record(load, names)),
+        ],
+        "live": [each for load in problem.live for each in load_record(load, names)],
+    }
+
+
+def _ground(joint: FaceJoint) -> list[list[float]]:
+    """Return the corners of a tetrahedron behind a joint with the ground."""
+    out = joint.normal * (-1 if joint.before == SUPPORT else 1)
+    middle = joint.points.mean(axis=0)
+    long = float(np.ptp(joint.points, axis=0).max()) or 1.0
+    one, other = frame(joint.normal)
+    ways = [2 * one, other - one, -other - one, out]
+    return [(middle + long * way).tolist() for way in ways]

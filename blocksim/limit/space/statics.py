@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from itertools import chain
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +16,13 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, ObservedJoint
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.limit.exact import Exact
+from blocksim.limit.proof import Proof
 from blocksim.limit.resultants import Resultants
+from blocksim.limit.space.bodies import bodies_of, opened_between
 from blocksim.limit.space.cones import Answer
 from blocksim.limit.space.contacts import Contacts, solved
+from blocksim.limit.space.proof import proof_of_fall, proof_of_rest
 from blocksim.limit.space.resultants import resultants_in_space
 
 BALANCED = 1e-12
@@ -46,9 +51,6 @@ class SpatialEquilibrium:
         over the points of its joint; below 0 it would have to pull. At most 1, -inf where not
         even pulling would help.
     """
-
-    proof: ClassVar[None] = None
-    """Nothing here is proved in rational numbers."""
 
     def __init__(self, contacts: Contacts, found: Answer) -> None:
         self._contacts, self._found = contacts, found
@@ -100,12 +102,29 @@ class SpatialEquilibrium:
         """
         return self._held[1]
 
-    @property
+    @cached_property
     def exists(self) -> bool | None:
-        """Whether forces exist; None where neither forces nor a motion pass the check."""
+        """Whether forces exist; None where neither the check nor a proof tells."""
+        if self.gap <= BALANCED if self._presses else self.gap * FARTHEST < 1:
+            return self._presses
+        return None if self.proof is None else self.proof.claim == "stands"
+
+    @cached_property
+    def proof(self) -> Proof | None:
+        """The proof that blocks stand or fall; None where there is none either way."""
+        contacts, held = self._contacts, self._held[0]
+        exact = Exact(contacts.problem)
         if self._presses:
-            return True if self.gap <= BALANCED else None
-        return False if self.gap * FARTHEST < 1 else None
+            return proof_of_rest(exact, contacts, held.reshape(-1, 3))
+        pull = contacts.problem.applied_forces().ravel()
+        for rates in chain([held], contacts.opened(pull, held)):
+            if (found := proof_of_fall(exact, rates)) is not None:
+                return found
+        owner = bodies_of(contacts, held)
+        for rates in opened_between(contacts, pull, held, owner):
+            if (found := proof_of_fall(exact, rates, owner.tolist())) is not None:
+                return found
+        return None
 
     @property
     def point_forces(self) -> Array | None:

@@ -1,0 +1,265 @@
+"""Proofs in space that blocks stand or fall, in rational numbers, as of `limit.proof`.
+
+A force lies in the cone of friction where its part across the normal is at most mu times that
+along it; of both parts squares are compared, so no root is taken. The normal is the vector that
+is stored, of whatever length.
+
+- *Stands*: forces of the cone programme lie within their cones, but balance to round-off only.
+  What is left on each block is handed on, exactly, over the points of its widest joint, from
+  block to block to a support. The sums still lie within the cones, or it is no proof.
+- *Falls*: rates that open each point by more than the solver leaves over. Where friction has no
+  bound points may not slip, which rates in floating-point numbers cannot tell: such a fall is
+  proved only of blocks that part from all others, or stay at rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.common.later import Library
+from blocksim.limit.exact import NOTHING, SLACK, Exact, Number, Point, apart, moment, spun
+from blocksim.limit.exact import whole_numbers as whole
+from blocksim.limit.handing import ways
+from blocksim.limit.proof import Proof
+from blocksim.limit.rational import as_bodies
+from blocksim.limit.space.contacts import Contacts
+
+if TYPE_CHECKING:
+    import flint
+else:
+    flint = Library("flint")
+
+FINE = 1 << 20
+"""Into how many parts the room of a point is told."""
+AXES: list[Point] = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
+Force = list[Number]
+Wrench = list[Number]
+Forces = list[list[Force]]
+
+
+def proof_of_rest(exact: Exact, contacts: Contacts, forces: Array) -> Proof | None:
+    """Prove that a problem stands.
+
+    `forces`, (points, 3): Along the normal of each point and two ways across, which hardly
+        balance [mean weights].
+    Returns: None where these forces prove nothing.
+    """
+    stored, unit = _stored(exact, contacts, forces * contacts.unit)
+    times = int(exact.force / unit)
+    left: list[Wrench] = [[times * each for each in pull] for pull in exact.pull]
+    for joint, each in enumerate(stored):
+        _act(exact, left, joint, each)
+    tolerance = NOTHING
+    found = _handed_on(exact, contacts, forces, stored, left)
+    if found is None or not _within(exact, found):
+        tolerance, found = SLACK, stored
+        # Less than is allowed: how far a block reaches is rounded here.
+        few = zip(left, exact.allowed, strict=True)
+        if not _within(exact, found) or any(
+            2 * abs(over) > times * most for wrench, allowed in few
+            for over, most in zip(wrench, allowed, strict=True)
+        ):  # fmt: skip
+            return None
+    return Proof(exact=exact, claim="stands", tolerance=tolerance, forces=found, unit=unit)
+
+
+def proof_of_fall(
+    exact: Exact, rates: Array, owner: Sequence[int] | None = None
+) -> Proof | None:
+    """Prove that a problem falls.
+
+    `rates`, (6 blocks,): Of a mechanism that opens points by more than round-off; velocities
+        in units of the size.
+    `owner`, (blocks,) sequence of int: Body of each block, of those that move as one, `SUPPORT`
+        at rest; by default each moves by itself.
+    Returns: None where these rates prove nothing.
+    """
+    size = exact.problem.assembly.size / float(exact.grain)
+    scaled = rates.reshape(-1, 6) * [*[size] * 3, 1.0, 1.0, 1.0]
+    _, parts = whole(scaled.ravel().tolist())
+    motion = [parts[at : at + 6] for at in range(0, len(parts), 6)]
+    motion = motion if owner is None else as_bodies(exact, motion, owner)
+    if not _lawful(exact, motion):
+        return None
+    for tolerance, times in ((SLACK, 2), (NOTHING, 0)):
+        work = sum(
+            pull * way - times * (least + 1) * abs(way)
+            for pulls, allowed, rate in zip(exact.pull, exact.allowed, motion, strict=True)
+            for pull, least, way in zip(pulls, allowed, rate, strict=True)
+        )
+        if work > 0:
+            return Proof(exact=exact, claim="collapses", tolerance=tolerance, rates=motion)
+    return None
+
+
+def _stored(exact: Exact, contacts: Contacts, forces: Array) -> tuple[Forces, Fraction]:
+    """Return forces as they are stored, by joint and point, and the unit they are in.
+
+    Without friction they go along the normal to the last digit.
+    """
+    across = np.einsum("pi,pid->pd", forces, contacts.axes[contacts.joint])
+    grain, parts = whole(across.ravel().tolist())
+    unit = min(grain, exact.force)
+    parts = [each * int(grain / unit) for each in parts]
+    found, at = Forces(), 0
+    for joint, ends in enumerate(exact.ends):
+        found.append([[*parts[3 * each : 3 * each + 3]] for each in range(at, at + len(ends))])
+        if exact.friction[joint] == 0:
+            n = exact.normals[joint]
+            long = sum(p * p for p in n)
+            for force in found[-1]:
+                press = Fraction(sum(p * q for p, q in zip(force, n, strict=True)), long)
+                force[:] = [max(press, NOTHING) * each for each in n]
+        at += len(ends)
+    return found, unit
+
+
+def _act(exact: Exact, left: list[Wrench], joint: int, forces: Sequence[Force]) -> None:
+    """Add forces at the points of a joint to what is left on the blocks beside it."""
+    for block, sign in zip(exact.sides[joint], (-1, 1), strict=True):
+        if block == SUPPORT:
+            continue
+        for point, force in zip(exact.ends[joint], forces, strict=True):
+            turn = moment(apart(point, exact.centres[block]), force)
+            for at, each in enumerate((*force, *turn)):
+                left[block][at] += sign * each
+
+
+def _handed_on(
+    exact: Exact, contacts: Contacts, forces: Array, stored: Forces, unbalanced: list[Wrench]
+) -> Forces | None:
+    """Hand on what is left on each block through the widest joints to a support.
+
+    `forces`, (points, 3), `stored`: The same forces.
+    `unbalanced`: What they leave on each block.
+    Returns: Forces that leave nothing; None where some joint cannot bear what is left.
+    """
+    room: Array = np.maximum(contacts.slack(forces.ravel()), 0.0)
+    of_joint: Array = np.zeros(len(exact.sides))
+    np.add.at(of_joint, contacts.joint, room)
+    shares = np.maximum(room / max(float(room.max()), 1e-300) * FINE, 1).astype(np.int64)
+    last = np.cumsum([len(ends) for ends in exact.ends])
+    own: list[list[int]] = [each.tolist() for each in np.split(shares, last[:-1])]
+    added: dict[int, list[Force]] = {}
+    order, left, found = ways(exact, of_joint), [*unbalanced], [*stored]
+    if len(order) < len(left):
+        return None
+    for block, joints in reversed(order):
+        wrench = left[block]
+        if not any(wrench):
+            continue
+        more = _borne(exact, block, joints[:1], wrench, own)
+        more = more or _borne(exact, block, joints, wrench, own)
+        if more is None:
+            return None
+        for joint, each in more.items():
+            (before, after), centre = exact.sides[joint], exact.centres[block]
+            other = before if after == block else after
+            if other != SUPPORT:
+                handed = wrench if len(more) == 1 else _wrench(exact, joint, each, block)
+                arm = apart(centre, exact.centres[other])
+                turn = moment(arm, handed[:3])
+                handed = [*handed[:3], *_sum(handed[3:], turn)]
+                left[other] = _sum(left[other], handed)
+            old: list[Force] = added.get(joint, [[0, 0, 0]] * len(each))
+            added[joint] = [*map(_sum, old, each)]
+    for joint, each in added.items():
+        found[joint] = [*map(_sum, found[joint], each)]
+    return found
+
+
+def _borne(
+    exact: Exact, block: int, joints: Sequence[int], wrench: Wrench, shares: Sequence[list[int]]
+) -> dict[int, list[Force]] | None:
+    """Return forces at the points of joints that bear what is left on a block, exactly.
+
+    Each point is a spring as stiff as it has room, without friction along its normal alone.
+    They bear what is left as the block moves. None where they cannot: springs at an edge bear
+    no moment about it.
+    """
+    rows: list[list[int]] = []
+    stiff: list[int] = []
+    for joint in joints:
+        across = [exact.normals[joint]] if exact.friction[joint] == 0 else AXES
+        for point, share in zip(exact.ends[joint], shares[joint], strict=True):
+            arm = apart(point, exact.centres[block])
+            rows += [[*way, *moment(arm, way)] for way in across]
+            stiff += [share] * len(across)
+    columns = np.array(rows, dtype=object)
+    springs = columns * np.array(stiff, dtype=object)[:, None]
+    common = math.lcm(*(each.denominator for each in wrench))
+    right = [-int(each * common) for each in wrench]
+    matrix: Any = flint.fmpz_mat(6, 6, (columns.T @ springs).ravel().tolist())
+    try:
+        moves, scale = matrix.solve(flint.fmpz_mat(6, 1, right)).numer_denom()
+    except ZeroDivisionError:
+        return None
+    below = common * int(scale)
+    pushes: list[int] = (springs @ np.array([int(each) for each in moves.entries()])).tolist()
+    found: dict[int, list[Force]] = {}
+    at = 0
+    for joint in joints:
+        sense = 1 if exact.sides[joint][1] == block else -1
+        n = exact.normals[joint]
+        for _ in exact.ends[joint]:
+            if exact.friction[joint] == 0:
+                push, at = [pushes[at] * each for each in n], at + 1
+            else:
+                push, at = pushes[at : at + 3], at + 3
+            force: Force = [Fraction(sense * each, below) for each in push]
+            found.setdefault(joint, []).append(force)
+    return found
+
+
+def _wrench(exact: Exact, joint: int, forces: Sequence[Force], block: int) -> Wrench:
+    """Return what forces at the points of a joint take off a block."""
+    sign = -1 if exact.sides[joint][1] == block else 1
+    total: Wrench = [NOTHING] * 6
+    for point, force in zip(exact.ends[joint], forces, strict=True):
+        turn = moment(apart(point, exact.centres[block]), force)
+        total = _sum(total, [sign * each for each in (*force, *turn)])
+    return total
+
+
+def _sum(one: Sequence[Number], other: Sequence[Number]) -> list[Number]:
+    return [p + q for p, q in zip(one, other, strict=True)]
+
+
+def _within(exact: Exact, forces: Forces) -> bool:
+    """Tell whether all forces press and lie within friction."""
+    for n, mu, each in zip(exact.normals, exact.friction, forces, strict=True):
+        for force in each:
+            along, across = _parts(force, n)
+            if along < 0 or (mu is not None and across > mu * mu * along * along):
+                return False
+    return True
+
+
+def _lawful(exact: Exact, motion: list[list[int]]) -> bool:
+    """Tell whether no point closes, or slips without opening."""
+    for joint, sides in enumerate(exact.sides):
+        moved = [(motion[side], exact.centres[side], sign)
+                 for side, sign in zip(sides, (-1, 1), strict=True)
+                 if side != SUPPORT and any(motion[side])]  # fmt: skip
+        n, mu = exact.normals[joint], exact.friction[joint]
+        for point in exact.ends[joint] if moved else ():
+            way: list[int] = [0, 0, 0]
+            for rate, centre, sign in moved:
+                turned = zip(rate[:3], spun(rate[3:], apart(point, centre)), strict=True)
+                way = [w + sign * (v + u) for w, (v, u) in zip(way, turned, strict=True)]
+            opens, slips = _parts(way, n)
+            if opens < 0 or (slips and (mu is None or mu * mu * slips > opens * opens)):
+                return False
+    return True
+
+
+def _parts(way: Sequence[Any], n: Point) -> tuple[Any, Any]:
+    """Return the part along a normal, and the square of that across, times its length."""
+    side = moment(way, n)
+    return sum(p * q for p, q in zip(way, n, strict=True)), sum(each * each for each in side)
