@@ -25,8 +25,12 @@ from worlds import Simulation, get_engine, least_motion, observe, observed_mode,
 from blocksim import (
     Arch,
     CircularArch,
+    Load,
     Mode,
     Verdict,
+    Wall,
+    bracket,
+    check,
     simulate,
 )
 
@@ -103,6 +107,19 @@ from blocksim.kinds.circular import CircularArch
 arch = Arch(half_angle=1.5707963267948966, eta=0.1, voussoirs=13)
 print(simulate(CircularArch.of(arch, friction=0.6), method="pymunk", duration=1.0).state_hash)
 """
+
+
+def test_a_wall_that_slides_by_a_hundredth_as_it_parts_keeps_its_forces() -> None:
+    """Tall blocks in bond, pushed: 5 % to either side of what limit analysis proves."""
+    wall = Wall(length=96.72, courses=4, block_length=17.07, block_height=32.38, bond=0.2145,
+                friction=0.1797)  # fmt: skip
+    found, problem = bracket(wall, over="push"), wall.problem()
+    assert found.proved
+    every = tuple(range(len(problem.assembly.blocks)))
+    for share, verdict in ((0.95, Verdict.STANDS), (1.05, Verdict.COLLAPSES)):
+        push = Load(force=np.array([share * found.limit, 0]), blocks=every, per_weight=True)
+        seen = check(replace(problem, dead=(push,)), method="pymunk")
+        assert seen.verdict is verdict
 
 
 def test_same_motion_in_every_process() -> None:

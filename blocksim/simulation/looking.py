@@ -18,9 +18,10 @@ from blocksim.engines.solid.stepping import at_rest
 from blocksim.limit import equilibrium, least_motion
 from blocksim.limit.space import can_rest
 
-SLIPS, STICKS = 0.02, 1e-4
-"""Slip over the largest motion of a joint above which a mechanism slides, and below which it
-surely does not."""
+STICKS = 1e-4
+"""Slip over the largest motion of a joint up to which a mechanism does not slide.
+
+Walls of tall blocks slide by a hundredth as they part."""
 SURE = 1e-4
 """Residual over the accelerations at which blocks in space surely move."""
 
@@ -33,7 +34,6 @@ class Looking:
     It has:
     `asks`: Whether limit analysis can be asked about it.
     `far`: How far the farthest block is from the origin [size].
-    `slips`: Slip above which a motion slides.
     """
 
     def __init__(self, problem: Problem[Any], asked: Problem[Any] | None = None) -> None:
@@ -41,7 +41,6 @@ class Looking:
         self.assembly = problem.assembly
         self.asks = problem.in_space or problem.is_planar
         self.far = float(np.abs(self.assembly.centres).max()) / self.assembly.size
-        self.slips = STICKS if problem.in_space else SLIPS
 
     def _shares(self, poses: Array) -> tuple[float, float]:
         found = overlap_and_slip_in_space if self._in_space else overlap_and_slip

@@ -187,7 +187,7 @@ def _slides(look: Looking, seen: Onset, *, late: bool) -> bool:
     """Tell whether blocks fall, or soon will, by joints that slide."""
     falls = seen.verdict is Verdict.COLLAPSES
     falls = falls or (late and look.overlap(seen.mechanism) < NEARLY)
-    return falls and look.slip(seen.mechanism) > look.slips
+    return falls and look.slip(seen.mechanism) > STICKS
 
 
 def _judged(seen: Onset, may_rest: bool, rougher: Problem[Any] | None) -> Onset:
