@@ -36,7 +36,7 @@ CLOSED = 141
 
 
 def main() -> None:
-    """Run the command line; wrong input and failures of the machine are one line."""
+    """Run the command line. Wrong input and failures of the machine are one line."""
     interrupts.install()
     _prepare()
     code = CRASHED

@@ -22,7 +22,7 @@ SOIL = (
 
 @dataclass(frozen=True, kw_only=True)
 class Loading:
-    """What acts besides gravity, as given on the command line; None where it is not."""
+    """Options that say what acts besides gravity. Those not given are None."""
 
     heading: ClassVar[str] = "What acts on it"
 
@@ -123,7 +123,7 @@ class Loading:
 
     @property
     def on_road(self) -> dict[str, object]:
-        """Those that lie on the road; empty where none is given."""
+        """Options given of what lies on the road."""
         return given_of(self, "fill", *SOIL, "point_load", "patch_load", "dispersal")
 
 

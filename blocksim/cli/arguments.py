@@ -73,7 +73,7 @@ KINDS: dict[object, click.ParamType[Any]] = {
 
 @dataclass(frozen=True, kw_only=True)
 class Option(Field):
-    """What is said of an option, beside its type and default.
+    """Facts about an option besides its type and default.
 
     `name`: With its dashes, where it is not that of the parameter; `--yes/--no` of a flag.
     `folder`: Whether a path is that of a folder.
@@ -86,7 +86,7 @@ class Option(Field):
 
 @dataclass(frozen=True, kw_only=True)
 class Argument(Option):
-    """What is said of an argument, which may be left out."""
+    """Facts about an argument, which may be left out."""
 
 
 NEEDED = Parameter.empty

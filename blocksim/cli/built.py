@@ -38,7 +38,7 @@ SNAP = option(
 
 @dataclass(frozen=True, kw_only=True)
 class Given:
-    """The options that say what is built, as given; None where they are not.
+    """Options that say what is built. Those not given are None.
 
     All but those of `OF_ANY` are parameters of the circular arch, and of each kind that has
     one of that name.
@@ -97,12 +97,12 @@ class Given:
 
     @property
     def drawn(self) -> dict[str, object]:
-        """Those of drawings; empty where none is given."""
+        """Options given of drawings."""
         return given_of(self, "tolerance", "unit", "layer", "snap")
 
     @property
     def measured(self) -> dict[str, object]:
-        """Those that give an arch in metres; empty where none is given."""
+        """Options given of an arch in metres."""
         return given_of(self, "span", "rise", "thickness", "at")
 
     @property

@@ -59,7 +59,7 @@ def check_each(
 
 
 def _lines() -> Iterator[list[bytes]]:
-    """Give the lines that are there, as soon as they are; of one that is too long its start."""
+    """Give lines as soon as they are there, of one that is too long its start."""
     pieces, size = list[bytes](), 0
     # None where it was closed.
     stream = cast("TextIOWrapper | None", sys.stdin)

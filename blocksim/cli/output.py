@@ -83,7 +83,7 @@ def answer_with(
     *,
     as_json: bool,
 ) -> None:
-    """Print an answer, as one JSON object or as lines for people; what is told is made."""
+    """Print an answer as one JSON object or as lines, of which only one is made."""
     if as_json:
         click.echo(printable(json_text(record())))
     else:
@@ -100,7 +100,7 @@ def say(*lines: str) -> None:
 
 
 def fitted(lines: Iterable[str]) -> list[str]:
-    """Return lines folded at the width there is; what follows hangs below a line's words."""
+    """Return lines folded at the width of the window. Folded parts hang below the words."""
     width = shutil.get_terminal_size().columns
     # None where it was closed.
     coloured = sys.stdout and sys.stdout.isatty() and "NO_COLOR" not in os.environ

@@ -42,7 +42,7 @@ def bar() -> Generator[Report]:
 
 
 class Table(RichTable):
-    """A table of columns with headings, those of numbers to the right; cells are text.
+    """A table of text. Columns of numbers are aligned to the right.
 
     `below`: Columns, the last ones, that go below their row where the window has no room.
     """

@@ -150,14 +150,14 @@ def _joints(answer: Check[Any], carried: Carried | None) -> list[JointRecord]:
 
 
 def _ends(joint: Joint | FaceJoint) -> list[list[float]]:
-    """Return the ends of a joint, one of a corner; in space the corners of its polygon."""
+    """Return the ends of a joint, or the one of a corner, or in space its corners."""
     if isinstance(joint, FaceJoint):
         return joint.points.tolist()
     return [joint.inner.tolist(), *([] if joint.is_corner else [joint.outer.tolist()])]
 
 
 def _shaken(answer: Check[Any]) -> ShakenRecord | None:
-    """Tell what became of blocks on ground that shakes; times since the release."""
+    """Tell what became of blocks on ground that shakes. Times are since the release."""
     if answer.shaken is None:
         return None
     rocking, assembly = answer.shaken.rocking, answer.problem.assembly

@@ -159,7 +159,7 @@ def ends_proved_words(answer: Bracket[Any]) -> str:
 
 
 def values_tried(answer: Bracket[Any]) -> str:
-    """Say the two values tried; where there is no change, what holds at all values."""
+    """Say the two values tried, or what holds at all values where there is no change."""
     if answer.low is None and answer.high is None:
         words = {0: "falls at all values", 1: "stands at all values"}
         known = -1 if answer.intervals is None else len(answer.intervals)
@@ -221,7 +221,7 @@ def _arch_lines(answer: Bracket[Any], of: ArchBracket) -> list[str]:
 
 
 def _thickness_lines(answer: Bracket[Any], of: ArchBracket) -> list[str]:
-    """Tell a least thickness in metres; nothing where no length was given."""
+    """Tell a least thickness in metres where a length was given."""
     line, low, high = measured_line(answer.problem), answer.low, answer.high
     at = None if line is None else line.at
     if not is_metric(of.shape, at) or high is None or math.isinf(high):
@@ -235,7 +235,7 @@ def _thickness_lines(answer: Bracket[Any], of: ArchBracket) -> list[str]:
 
 
 def interval_words(answer: Bracket[Any]) -> str | None:
-    """Say between which values it stands; None where there is but one end."""
+    """Say between which values it stands, or return None where there is but one end."""
     found = answer.intervals or ()
     if sum(end is not None for each in found for end in (each.low, each.high)) < 2:
         return None
@@ -273,7 +273,7 @@ def _exact(label: str, of: ArchAnswer, digits: int = SIX) -> str:
 
 
 def _digits(of: ArchBracket) -> int:
-    """Digits that tell both ends of a bracket apart, and one or two more; six at least."""
+    """Return digits that tell the ends of a bracket apart and one more, six at least."""
     low, high = of.eta_low or 0.0, of.eta_high or 0.0
     return SIX if low >= high else max(SIX, 2 - math.floor(math.log10(1 - low / high)))
 
@@ -334,7 +334,7 @@ def _number(value: float) -> str:
 
 
 def signed(value: float, digits: int) -> str:
-    """Return a number with its sign; what rounds to nothing has none."""
+    """Return a number with its sign. A rounded 0 has none."""
     said = f"{value:+.{digits}f}"
     return said if float(said) else said[1:]
 

@@ -17,7 +17,7 @@ HEADINGS = ("used", "load factor", "thrust", "verdict", "case")
 
 
 def case_row(told: CaseAnswer) -> tuple[str, str, str, str, str]:
-    """Return a case as cells of a table, below `HEADINGS`; a dash where nothing is known.
+    """Return a case as cells of a table below `HEADINGS`. A dash means that nothing is known.
 
     Thrust is the least and the greatest, in kN/m, or kN where blocks differ in depth.
     """

@@ -23,7 +23,7 @@ DARKEST, LIGHTEST = 0.12, 0.93
 
 
 def inline_map(svg: bytes, names: Mapping[int, str]) -> tuple[str, dict[str, str]]:
-    """Turn a map into a part of the page, as `inline_picture`; its links name rows."""
+    """Turn a map into a part of the page, as `inline_picture` does. Its links name rows."""
     text, dark = inline_picture(svg, "map", "group", "map")
     reached: set[str] = set()
 

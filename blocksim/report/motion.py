@@ -129,7 +129,7 @@ def mechanism_drawing(
 
 
 def joints_of(recording: Recording) -> tuple[ObservedJoint, ...]:
-    """Return what each joint does as the motion of a recording starts; closed where none."""
+    """Return what each joint does as the motion of a recording starts."""
     displaced = recording.displacement
     if displaced[-1] <= FIRST:
         return classify(recording.assembly, recording.poses[0], least=math.inf)

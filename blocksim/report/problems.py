@@ -38,7 +38,7 @@ BUILT = {*SIZES[:4], "weight_kN", "fill_weight_kN", "fill_is"}
 
 
 def problem_record(problem: Problem[Any], over: str | None = None) -> ProblemRecord:
-    """Return a problem as answers have it; null what follows from what is searched over."""
+    """Return a problem for answers. What follows from the searched parameter is null."""
     spatial = problem.in_space
     arch = None if spatial else weighed_arch(problem)
     fill = None if spatial else fill_of(problem)
@@ -86,7 +86,7 @@ def _fixed_sizes(problem: Problem[Any], over: str) -> dict[str, object]:
 
 
 def size_record(arch: Arch) -> dict[str, object]:
-    """Return dimensions of an arch for JSON; at eta = 2 the intrados has no span and rise."""
+    """Return dimensions of an arch for JSON. At eta = 2 the intrados has no span and rise."""
     clear = line_of(arch) if arch.eta < 2 else None
     return {
         "span_m": clear and clear.span,
@@ -99,7 +99,7 @@ def size_record(arch: Arch) -> dict[str, object]:
 
 
 def measured_line(problem: Problem[Any]) -> Line | None:
-    """Return the line of an arch that was measured; None where none was."""
+    """Return the line of an arch that was measured, or None."""
     maker = problem.maker
     return maker.line if isinstance(maker, CircularArch) else None
 
@@ -170,7 +170,7 @@ def weight_of(problem: Problem[Any]) -> float:
 
 
 def _live(problem: Problem[Any]) -> float:
-    """Vertical live loads in all at a factor of 1, upwards [N]; body forces are none."""
+    """Return the sum of vertical live loads at a factor of 1, upwards, without pushes [N]."""
     loads = [load for load in problem.live if not load.per_weight]
     return float(sum(load.force[-1] * len(load.blocks) for load in loads))
 
@@ -213,7 +213,7 @@ def length_lines(problem: Problem[Any]) -> list[str]:
 
 
 def weighed_arch(problem: Problem) -> Arch | None:
-    """Return the circular arch of a problem; None without a density: its weights are ratios."""
+    """Return the circular arch of a problem, or None where its weights are only ratios."""
     maker = problem.maker
     if not isinstance(maker, CircularArch):
         return None

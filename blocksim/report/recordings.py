@@ -47,7 +47,7 @@ def unsolved_words(recording: Recording) -> str:
 
 
 def recording_lines(recording: Recording, unit: str) -> list[str]:
-    """Return a recording in words; `unit` is that of lengths in which it has been made."""
+    """Return a recording in words, with lengths in a unit."""
     lines = [
         f"{counted(len(recording.times), 'frame')}, "
         f"{recording.seconds(STANDARD_GRAVITY)[-1]:.2f} s, "

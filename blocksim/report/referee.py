@@ -57,7 +57,7 @@ def read_score(path: AnyPath) -> dict[str, Any]:
 
 
 def level_words(level: float | None) -> str:
-    """Say a level; none is a dash."""
+    """Return a level in words, a dash where there is none."""
     return "-" if level is None else f"{level:g} %"
 
 

@@ -167,7 +167,7 @@ def _verdicts(answer: Check[Any], sheet: Sheet) -> list[tuple[str, Verdict, str]
 
 
 def _active(answer: Check[Any]) -> list[Fact]:
-    """Joints that take part as it falls; in space, where they are many, how many do what."""
+    """Return the joints that take part as it falls, in space how many of each state."""
     problem = answer.problem
     if problem.in_space:
         states = map(state_of_any, (joint.state for joint in answer.joints))
@@ -186,7 +186,7 @@ def _active(answer: Check[Any]) -> list[Fact]:
 
 
 def _fall(answer: Check[Any]) -> dict[str, Any] | None:
-    """Show how it falls; what stands, beyond its load factor or below its least thickness."""
+    """Show how it falls. What stands is shown beyond its load factor or least thickness."""
     problem = answer.problem
     if answer.mechanism is not None:
         return _shown(answer, f"how it starts to fall, by {answer.method}")

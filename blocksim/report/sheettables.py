@@ -26,7 +26,7 @@ HINGE = "hinge"
 
 @dataclass(frozen=True, kw_only=True)
 class JointRow:
-    """What a joint carries, as the table says it."""
+    """Forces of a joint in the words of the table."""
 
     name: str
     normal: str

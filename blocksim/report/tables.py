@@ -131,7 +131,7 @@ def pictures(name: str, figure: Figure) -> dict[str, bytes]:
 
 
 def _points(rows: Sequence[Validation]) -> list[MapPoint]:
-    """Place each arch at the middle of its bracket; what never stands, at eta = 2."""
+    """Place each arch at the middle of its bracket, or at eta = 2 where none stands."""
     points: list[MapPoint] = []
     numbers = numbered(rows)
     first = next((row.engine for row in rows), "")

@@ -23,7 +23,7 @@ def answered(
     workers: int,
     progress: Progress,
 ) -> list[Found]:
-    """Do named jobs by so many processes; return what came of each, in their order."""
+    """Do named jobs by so many processes, and return their results in order."""
     if workers == 1:
         found: list[Found] = []
         for done, (name, job) in enumerate(jobs):
@@ -92,7 +92,7 @@ class Unasked:
 
     @property
     def words(self) -> str:
-        """All of it in a line."""
+        """Engine, scenarios and reason in a line."""
         return f"{self.engine}: {', '.join(self.scenarios)} ({self.why})"
 
 

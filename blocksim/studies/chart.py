@@ -79,12 +79,12 @@ class Point:
 
     @property
     def against(self) -> str:
-        """What the error is measured from."""
+        """The method from which the error is measured."""
         return REFINEMENTS[self.knob].against
 
 
 def cases(*, quick: bool) -> tuple[ChartArch, ...]:
-    """Return arches spread over the map, hard ones too; small ones if quick."""
+    """Return arches spread over the map, hard ones too, or small ones if quick."""
     chosen = (
         (("semicircle", 90, 0.7, 11), ("sliding shoulder", 125, 0.9, 10))
         if quick

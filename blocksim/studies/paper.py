@@ -59,7 +59,7 @@ class Printed:
 
     @property
     def difference(self) -> float:
-        """Relative difference; absolute, of a printed 0."""
+        """Relative difference, which is absolute of a printed 0."""
         return abs(self.value - self.printed) / (abs(self.printed) or 1.0)
 
 

@@ -78,7 +78,7 @@ REFINEMENTS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """What an engine said of one arch: acceleration [g] or nan; contacts times sweeps."""
+    """An engine's answer on one arch: acceleration [g] or nan, and contacts times sweeps."""
 
     verdict: Verdict
     acceleration: float

@@ -52,7 +52,7 @@ class Question(NamedTuple):
 
     @property
     def refused(self) -> str:
-        """Why the method is not asked; nothing where it is."""
+        """The reason why the method is not asked, empty where it is."""
         problem, engine = self.case.problem, None
         if self.method != LIMIT:
             engine = engine_named(self.method)
@@ -94,7 +94,7 @@ def _questions(case: Known, engines: Iterable[str] | None) -> Iterator[Question]
 
 
 def unasked(chosen: Sequence[Known], engines: Iterable[str] | None = None) -> list[Unasked]:
-    """Tell what `validate` does not ask, and why; arguments as there."""
+    """Tell what `validate` does not ask with the same arguments, and why."""
     found: dict[str, dict[str, dict[str, None]]] = {}
     names = None if engines is None else tuple(engines)
     for case in chosen:

@@ -42,7 +42,7 @@ class Head:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Answer:
-    """What was said of one scene.
+    """The answer to one scene.
 
     `verdict`, {"stands", "falls", "open"} or None: None where poses say it.
     `poses`, (frames, bodies, 3 or 7).

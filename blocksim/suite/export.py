@@ -119,7 +119,7 @@ def groups() -> list[str]:
 
 
 def chosen(levels: Collection[float] = (), within: Collection[str] = ()) -> Iterator[Scene]:
-    """Return scenes at some levels [%] of some groups; all where none is named.
+    """Return scenes at the levels [%] and of the groups named, or all.
 
     Scenes whose motion is asked for have no level, and come where no level is named.
     """

@@ -35,7 +35,7 @@ FRAMES = 10
 
 @dataclass(frozen=True, kw_only=True)
 class Family:
-    """A structure for each value of one parameter; fields are the keys of the file.
+    """A structure for each value of one parameter. Fields are the keys of the file.
 
     Parameters
     ----------
@@ -123,14 +123,14 @@ class Question:
 
     @cached_property
     def problem(self) -> Problem[Any]:
-        """What is asked about."""
+        """The structure that is asked about."""
         below = self.stands == (self.family.stands == "low")
         share = self.level / 100 * (-1 if below else 1)
         return self.family.at(self.family.critical * (1 + share))
 
     @cached_property
     def scene(self) -> Scene:
-        """What engines are given."""
+        """The scene that engines are given."""
         gravity, pushes = acting(self.problem)
         bodies = bodies_of(self.problem)
         masses = [body.mass for body in bodies if not body.fixed]

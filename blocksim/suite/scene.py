@@ -93,7 +93,7 @@ class Push:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scene:
-    """What an engine is given.
+    """A scene, as an engine is given it.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ class Scene:
 
     @property
     def size(self) -> float:
-        """Size of the mean body [m]; 0 where motion is asked for."""
+        """Size of the mean body [m], or 0 where motion is asked for."""
         return self.bound / BOUND
 
     @property
@@ -247,7 +247,7 @@ def turned(arms: Array, poses: Array) -> Array:
 
 
 class Bodies:
-    """What moves in a scene, its corners as arrays."""
+    """The bodies that move in a scene, with their corners as arrays."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene, moving = scene, scene.moving
@@ -287,7 +287,7 @@ class Bodies:
 
     @cached_property
     def _image(self) -> NDArray[np.int64] | None:
-        """The corner that is each one's mirror image across a vertical plane; None if none."""
+        """Each corner's mirror image across a vertical plane, or None without symmetry."""
         scene = self.scene
         if scene.pushes or scene.gravity[0] != 0:
             return None

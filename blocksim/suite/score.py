@@ -26,7 +26,7 @@ MOST = 0.9
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """What became of one scene.
+    """The result on one scene.
 
     `level`: [%]; None where motion is asked for.
     `answer`, {"right", "false", "open"}: Of motion: right where the error is known.
@@ -51,7 +51,7 @@ class Row:
     seconds: float = 0.0
 
     def at(self, level: float) -> Counted | None:
-        """Count it at a level [%]: motion at each, by its error; else at its own alone."""
+        """Count it at a level [%]. Motion counts at each level, by its error."""
         if self.level is not None:
             return self.answer if self.level == level else None
         if self.error is None:
@@ -61,7 +61,7 @@ class Row:
 
 @dataclass(frozen=True, kw_only=True)
 class Score:
-    """All that one engine has answered."""
+    """All results of one engine."""
 
     head: Head
     rows: tuple[Row, ...]
@@ -102,7 +102,7 @@ class Score:
         return 1 - sum(each["right"] for each in count) / every
 
     def middle(self, name: str) -> float | None:
-        """Return the median over scenes of drift, gain, asymmetry or error; None if of none."""
+        """Return the median of drift, gain, asymmetry or error over scenes, or None."""
         known = [value for row in self.rows if (value := getattr(row, name)) is not None]
         return median(known) if known else None
 

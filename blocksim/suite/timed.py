@@ -46,7 +46,7 @@ class Motion:
 
     @property
     def group(self) -> str:
-        """What is timed."""
+        """The kind of motion."""
         return self.scene.group
 
     @cached_property

@@ -38,7 +38,7 @@ class Asked(NamedTuple):
 
 @dataclass(kw_only=True)
 class Tally:
-    """What a number of rows took.
+    """Counts and times of a number of rows.
 
     `rows`, `failed`: Rows, and those that say why there is no answer.
     `simulated_s`: Time of the simulations [s].
@@ -105,7 +105,7 @@ def answer(asked: Sequence[Asked], versions: dict[str, str]) -> Answered:
 
 
 def _fill_in(cases: list[Case], rows: list[Row]) -> set[int]:
-    """Answer in bulk where statics tell, else one by one; return which were simulated."""
+    """Answer in bulk where statics tell, else one by one. Return which were simulated."""
     plain = [k for k, case in enumerate(cases) if case.is_plain]
     left = [*range(len(cases))]
     if plain:

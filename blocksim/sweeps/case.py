@@ -42,7 +42,7 @@ Infinite = float | Literal["inf", "-inf"] | None
 
 
 class SweepRow(TypedDict):
-    """A row of a sweep, as `read_rows` gives it; what there is nothing of is None."""
+    """A row of a sweep, as `read_rows` gives it. What is not known is None."""
 
     id: str
     kind: Text
@@ -140,7 +140,7 @@ class Case(NamedTuple):
 
     @property
     def pace(self) -> Pace:
-        """What cases that take about the same time have in common."""
+        """Properties that cases of about the same time have in common."""
         blocks = dict(self.given).get("voussoirs")
         return self.method, self.kind, blocks, self.over, self.settings
 
@@ -151,7 +151,7 @@ class Case(NamedTuple):
         return blake2b(said.encode(), digest_size=12).digest()
 
     def row(self, identity: bytes, version: str) -> Row:
-        """Return the row with nothing answered; what there is nothing of has no key."""
+        """Return the row with nothing answered. What is not given has no key."""
         own = PLAIN if self.kind == ARCH else {"mu"}
         row: Row = {"id": identity.hex(), "kind": self.kind}
         parameters: Row = {}
@@ -171,7 +171,7 @@ class Case(NamedTuple):
         return row
 
     def problem(self, eta: float | None = None) -> Problem:
-        """Build it, under its load and on its slope; an arch of a ratio with this eta."""
+        """Build it, under its load and on its slope. An arch of a ratio gets this eta."""
         given: dict[str, Any] = dict(self.given)
         mu = given.pop("mu")
         if self.is_plain:
@@ -221,7 +221,7 @@ def is_plain(kind: str, names: Iterable[str], over: str | None, rest: str) -> bo
 
 
 class Questions(Protocol):
-    """What a sweep asks: a `Design`, or anything else with these three."""
+    """The questions of a sweep: a `Design`, or anything else with these three members."""
 
     @property
     def method(self) -> tuple[str, ...]:

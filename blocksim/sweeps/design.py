@@ -66,7 +66,7 @@ class Axis(Written):
         return spaced(self.low, self.high, self.steps).tolist()
 
     def draw(self, generator: np.random.Generator, whole: bool) -> list[float]:
-        """Values at random, evenly spread; whole numbers include both ends."""
+        """Return values at random, evenly spread. Whole numbers include both ends."""
         count = DRAWN_AT_ONCE
         if self.low is None or self.high is None:
             return generator.choice(np.array(self.values), count).tolist()
@@ -134,7 +134,7 @@ class SettingsTable(Written):
 
 @dataclass(frozen=True, kw_only=True)
 class How:
-    """How a sweep asks.
+    """Settings of the questions of a sweep.
 
     `over`: Parameter to bracket over; without it the question is whether it stands. Of arches
         by their half-angle it is `thickness` where none is given.

@@ -76,7 +76,7 @@ class Recorded(Case):
 
 @dataclass(frozen=True, kw_only=True)
 class Scaled:
-    """What a sweep is asked: every record at every amplitude, amplitude by amplitude.
+    """The questions of a sweep: every record at every amplitude.
 
     Parameters
     ----------

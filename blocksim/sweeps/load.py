@@ -46,7 +46,7 @@ USUAL_ARCH = {"voussoirs": 27, "weight": "centreline"}
 
 @dataclass(frozen=True, kw_only=True)
 class DesignFile(How, Written):
-    """What a design file says besides the parameters of its kind.
+    """A design file, without the parameters of its kind.
 
     `kind`: Of structure.
     `mu`: Friction coefficient; inf allowed.

@@ -49,7 +49,7 @@ Chunk = list[Asked]
 
 @dataclass(frozen=True, kw_only=True)
 class Summary:
-    """What a sweep did.
+    """The result of a sweep.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def sweep(
     in_flight: int | None = None,
     progress: Progress = silent,
 ) -> Summary:
-    """Ask about many structures; rows that are there already are not asked for again.
+    """Ask about many structures. Rows that are there already are not asked for again.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ class _Todo:
             self._pace[pace] = before[0] + count, before[1] + seconds
 
     def chunk(self) -> Chunk:
-        """Next cases; none at the end."""
+        """Return the next cases, none at the end."""
         chunk: Chunk = []
         elapsed = time.perf_counter() - self._started
         left = min(max(elapsed * SHARE, SHORTEST), LONGEST)

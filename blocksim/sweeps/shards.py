@@ -25,7 +25,7 @@ LOCK = ".sweep.lock"
 
 @contextmanager
 def locked(folder: Path) -> Generator[None]:
-    """Keep a folder for one sweep; the system lets go of it however the process ends."""
+    """Keep a folder for one sweep. The system lets go of it however the process ends."""
     lock = FileLock(folder / LOCK, blocking=False)
     try:
         lock.acquire()
@@ -51,7 +51,7 @@ def write_shard(folder: Path, lines: list[bytes]) -> None:
 
 
 def identities(folder: Path) -> set[bytes]:
-    """Identities of the rows in a folder; takes away what a kill left half-written."""
+    """Return identities of the rows in a folder, and remove what a kill left half-written."""
     for part in folder.glob(UNFINISHED):
         with suppress(OSError):
             part.unlink()

@@ -20,7 +20,7 @@ from blocksim.sweeps.case import Case, Row
 
 
 def by_statics(cases: Sequence[Case], rows: list[Row]) -> list[int]:
-    """Fill in what closed form and limit analysis tell; return which are left to simulate."""
+    """Fill in what closed form and limit analysis tell. Return which are left to simulate."""
     groups: defaultdict[tuple[int, Weight], list[int]] = defaultdict(list)
     for k, row in enumerate(rows):
         groups[cast("int", row["voussoirs"]), cast("Weight", row["weight"])].append(k)
@@ -86,7 +86,7 @@ Arches = tuple[Array, Array, int, Weight]
 def _verdicts(
     cases: Sequence[Case], rows: list[Row], group: Sequence[int], arches: Arches
 ) -> list[int]:
-    """Judge arches by statics; return those to be simulated instead."""
+    """Judge arches by statics, and return those to be simulated instead."""
     alpha, mu, voussoirs, weight = arches
     eta = _numbers(rows, group, "eta")
     band = np.array([cases[k].band for k in group])
@@ -129,7 +129,7 @@ def _bracketed(case: Case, row: Row) -> bool:
 
 
 def _numbers(rows: Sequence[Row], group: Iterable[int], name: str) -> Array:
-    """Return a column; infinity is a text in it, and what is missing is no number."""
+    """Return a column as numbers. Infinity is a text in it, and what is missing is nan."""
     return np.array([rows[k][name] for k in group], dtype=float)
 
 

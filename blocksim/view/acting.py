@@ -38,7 +38,10 @@ PUSH = 56.0
 
 
 class Acting:
-    """Arrows, a pulse and amounts beside the blocks of one stage; `size` is pixels over 720."""
+    """Arrows, a pulse and amounts beside the blocks of one stage.
+
+    `size`: Height of the film over 720 pixels.
+    """
 
     def __init__(
         self, stage: Stage | SolidStage, view: View, panel: Panel, size: float
@@ -114,7 +117,7 @@ class Acting:
         return shapes, labels
 
     def _corner(self, words: str) -> Label:
-        """Words in the upper right corner, below the inset of ground that shakes."""
+        """Place words in the upper right corner, below the inset of ground that shakes."""
         size, panel = self._size, self._panel
         x = panel.x + panel.width - 24 * size - width_of(words, 16 * size, bold=True)
         inset = 0.0 if self._stage.recording.problem.shaking is None else (TALL + 66) * size
@@ -122,7 +125,7 @@ class Acting:
         return Label(x, y, words, size=16 * size, bold=True)
 
     def _moved(self, moment: Any) -> float | None:
-        """How far supports have moved, as they are told to [m]; None where none do."""
+        """Return how far supports have moved along their way [m], or None where none do."""
         stage, found = self._stage, list[float]()
         moves = stage.recording.problem.moves
         for block, move in zip(sorted(stage.carriers), moves, strict=True):

@@ -57,7 +57,7 @@ FAINT = 1e-7
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ArchPicture:
-    """What is drawn of one arch; r = 1.
+    """One arch as it is drawn. The radius is 1.
 
     `title`, `subtitle`: Outcome and figures; which arch it is.
     `weight`, {"centreline", "sector"}.
@@ -243,7 +243,7 @@ def _draw_mechanism(axes: Axes, picture: ArchPicture) -> None:
 
 
 def _put(axes: Axes, points: Array, **looks: Any) -> None:
-    """Draw a polygon; `add_patch` would look at every side as a curve, which takes longer."""
+    """Draw a polygon. `add_patch` would look at every side as a curve, which takes longer."""
     axes.add_artist(Polygon(points, **looks))
     axes.update_datalim(points)
 

@@ -133,7 +133,7 @@ def is_push(problem: Problem[Any], load: Load) -> bool:
 
 
 def push_of(problem: Problem[Any]) -> str | None:
-    """Say the push that is the only dead load of a problem; None where it is another."""
+    """Say the push that is the only dead load of a problem, or return None."""
     if len(problem.dead) != 1 or not is_push(problem, load := problem.dead[0]):
         return None
     across, up = load.force[0], load.force[-1]

@@ -18,7 +18,7 @@ from blocksim.view.style import FONT, QUIET, style_of_method
 
 
 class _Quantity(NamedTuple):
-    """What of a point is drawn along an axis."""
+    """A quantity of points that is drawn along an axis."""
 
     label: str
     of: Callable[[Point], float]

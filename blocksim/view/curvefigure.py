@@ -128,7 +128,7 @@ def _thrusts(axes: Axes, answer: Crossing) -> None:
 
 
 def _structure(axes: Axes, answer: Crossing) -> tuple[Array, Array]:
-    """Draw the worst place; return the corners of what is drawn [m]."""
+    """Draw the worst place, and return the corners of what is drawn [m]."""
     problem, road = answer.problem, road_of(answer.problem)
     shown = draw_structure(axes, problem, answer.mechanism)
     height = float(shown[0][:, 1].max()) if road is None else road

@@ -40,18 +40,18 @@ class Length:
 
     @property
     def value(self) -> float:
-        """What is measured [m]."""
+        """The length [m]."""
         return float((self.ends[1] - self.ends[0]) @ self.along)
 
     @property
     def words(self) -> str:
-        """What the drawing says."""
+        """Words on the drawing."""
         said = f"{self.what} {length_words(self.value)}"
         return f"{said} ({self.note})" if self.note else said
 
     @property
     def line(self) -> Array:
-        """Both ends of the dimension line, (2, 2) [m]."""
+        """The ends of the dimension line, (2, 2) [m]."""
         feet = [self.at + ((end - self.at) @ self.along) * self.along for end in self.ends]
         return np.array(feet)
 
@@ -68,7 +68,7 @@ class Angle:
 
     @property
     def words(self) -> str:
-        """What the drawing says."""
+        """Words on the drawing."""
         return f"\N{GREEK SMALL LETTER ALPHA} = {math.degrees(self.value):.4g}°"
 
     def point(self, share: float, radius: float | None = None) -> Array:

@@ -24,7 +24,7 @@ DOTS = 150
 
 
 def new_figure(size: tuple[float, float] | None = None, *, pad: float | None = None) -> Figure:
-    """Begin a figure so large [inches], parts so far apart; not laid out without a size."""
+    """Begin a figure of a size [inches], or one without layout where no size is given."""
     layout = None if size is None else ConstrainedLayoutEngine(h_pad=pad)
     figure = Figure(figsize=size, layout=layout)
     FigureCanvasAgg(figure)
@@ -49,7 +49,7 @@ def state_of_any(state: JointState) -> JointState:
 
 
 def words_of(state: JointState, *, is_arch: bool) -> tuple[str, str]:
-    """Words and colour of a joint's state in a legend."""
+    """Return words and colour of a joint's state for a legend."""
     if not is_arch and state.hinge is not None:
         return "hinge", JOINTS[state_of_any(state)]
     return state.words, JOINTS[state]
@@ -88,7 +88,10 @@ def loading_words(problem: Problem[Any]) -> list[str]:
 
 
 def clipped(polygon: Array, low: Array, high: Array) -> Array:
-    """Cut a convex polygon off at a box, (k, 2); k = 0 beyond (Sutherland and Hodgman 1974)."""
+    """Cut a convex polygon off at a box (Sutherland and Hodgman 1974).
+
+    Returns: (k, 2), with k = 0 where it lies beyond the box.
+    """
     for axis in (0, 1):
         for sign, limit in ((1.0, float(high[axis])), (-1.0, -float(low[axis]))):
             kept: list[Array] = []
@@ -113,7 +116,7 @@ def rims(polygons: Sequence[Array]) -> list[Array]:
 
 
 def grain_of(assembly: Assembly) -> float:
-    """Least distance between the centres of blocks that meet; of one alone its reach [m]."""
+    """Return the least distance between centres of blocks that meet, or a lone reach [m]."""
     before, after, *_ = assembly.joint_arrays
     pairs = (before != SUPPORT) & (after != SUPPORT)
     apart = np.hypot(*(assembly.centres[after[pairs]] - assembly.centres[before[pairs]]).T)

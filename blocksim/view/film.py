@@ -114,7 +114,7 @@ class Film:
         self.count = 1 + round(rate * (BEFORE + self.seconds * self.slow + AFTER))
 
     def ends_before(self, at: float) -> str:
-        """Say when it ends, as the clock shows it, if that is before a time; else ""."""
+        """Say when it ends, as the clock shows it, if that is before a time."""
         shown = self.seconds / self._tick
         later = at > max(shown, round(shown, digits_of(shown)))
         return self._clock(self.seconds).removeprefix("t = ") if later else ""
@@ -134,7 +134,7 @@ class Film:
         self._canvas.save(file, kind)
 
     def figure(self, at: float | None = None) -> Figure:
-        """Return one frame as a figure, as of `still`; the film is at its end with that."""
+        """Return one frame as a figure, as of `still`. The film cannot be used after that."""
         self._pose(at)
         return self._canvas.figure()
 
@@ -223,7 +223,7 @@ class Film:
     def _still(
         self, states: set[JointState], *, thrust: bool
     ) -> tuple[list[Part], list[Label]]:
-        """All that stays the same: surroundings, scale bars, words, legend of what is seen."""
+        """Return what stays the same: surroundings, scale bars, words and legend."""
         parts: list[Part] = []
         labels: list[Label] = []
         size = self._size
@@ -266,7 +266,7 @@ class Film:
         return Label(x, 15 * self._size, words, size=14 * self._size, colour=QUIET)
 
     def _entries(self, states: set[JointState], *, thrust: bool) -> list[tuple[str, str]]:
-        """Words and colours of what occurs."""
+        """Return words and colours of what occurs."""
         is_arch = all(stage.is_arch for stage in self._stages)
         told = [words_of(state, is_arch=is_arch) for state in JOINTS if state in states]
         if thrust and any(stage.thrust for stage in self._stages):

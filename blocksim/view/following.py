@@ -21,7 +21,7 @@ MARGIN = 0.03
 
 
 class View(Protocol):
-    """How a stage is looked at."""
+    """A view of a stage."""
 
     still: list[Shape]
     """What stays the same in every frame."""
@@ -88,7 +88,7 @@ def eased(times: Array, shares: Array, before: float) -> tuple[Array, Array]:
 
 
 def zoomed(shapes: Sequence[Shape], share: float, centre: Array) -> list[Shape]:
-    """Draw shapes smaller about a point; lines keep their width."""
+    """Draw shapes smaller about a point. Lines keep their width."""
     if share == 1:
         return list(shapes)
     return [shape._replace(points=centre + share * (shape.points - centre)) for shape in shapes]

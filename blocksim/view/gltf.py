@@ -54,7 +54,7 @@ def mesh_of(faces: Sequence[Ring], edges: Array | None = None) -> Solid:
 
 
 class Document:
-    """What is written, as it grows: JSON, and the numbers it points to."""
+    """A glTF document as it grows: JSON, and the numbers to which it points."""
 
     def __init__(self, blocks: int) -> None:
         self.nodes: list[dict[str, Any]] = []
@@ -140,7 +140,7 @@ class Document:
         self.animation["channels"].append(channel)
 
     def json(self, uri: str | None = None) -> bytes:
-        """Return the JSON part; the buffer is at `uri`, or follows."""
+        """Return the JSON part. The buffer is at `uri`, or follows where there is none."""
         buffer: dict[str, Any] = {"byteLength": len(self._numbers)}
         document = {
             "asset": {"version": "2.0", "generator": f"blocksim {__version__}"},

@@ -122,7 +122,7 @@ def _draw_near(axes: Axes, crowded: Sequence[MapPoint], weight: Weight) -> None:
 
 
 def _place(point: MapPoint) -> tuple[float, float]:
-    """Where a point is drawn: unbounded friction in its strip."""
+    """Return the place of a point. Unbounded friction is in its strip."""
     return sum(STRIP) / 2 if math.isinf(point.mu) else min(point.mu, LARGEST_MU), point.eta
 
 
@@ -132,7 +132,7 @@ def _draw_points(
     points: Sequence[MapPoint],
     unnamed: Sequence[MapPoint] = (),
 ) -> None:
-    """Draw points and their labels; those without a name small, they are elsewhere, too."""
+    """Draw points and their labels. Unnamed ones are small, as the enlarged part names them."""
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     # Of the map on its page; the enlarged part covers fewer points across and up.
     inset = INSET[2:] if section is NEAR else (1.0, 1.0)

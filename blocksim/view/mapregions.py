@@ -169,7 +169,7 @@ def draw_unbounded(
 def _name_regions(
     axes: Axes, section: Section, shapes: MapShapes, friction: FrictionAxis
 ) -> None:
-    """Write each mode into its region; the thin one gets a line to its name."""
+    """Write each mode into its region. A line leads to the name of the thin one."""
     for mode, (mu, eta) in section.names.items():
         size = 10 if mode in {Mode.SRR, Mode.RSR} else 13
         style: dict[str, Any] = {

@@ -35,7 +35,7 @@ LEVEL = 1e-9
 
 @dataclass(frozen=True)
 class FrictionAxis:
-    """How friction is laid off: as mu, or as an angle arctan mu up to 90 [deg]."""
+    """The axis of friction: mu, or the angle arctan mu up to 90 [deg]."""
 
     angle: bool = False
 
@@ -46,18 +46,18 @@ class FrictionAxis:
 
     @property
     def end(self) -> float:
-        """Where the axis ends."""
+        """The end of the axis."""
         return 90.0 if self.angle else LARGEST_MU
 
     @property
     def label(self) -> str:
-        """What is written below it."""
+        """The words below it."""
         return (
             r"friction angle $\varphi$ [deg]" if self.angle else r"friction coefficient $\mu$"
         )
 
     def place(self, mu: ArrayLike) -> Array:
-        """Where coefficients are on it."""
+        """Return the places of coefficients on it."""
         values = np.asarray(mu, dtype=float)
         return np.degrees(np.arctan(values)) if self.angle else values
 
@@ -72,7 +72,7 @@ COEFFICIENT, ANGLE = FrictionAxis(), FrictionAxis(angle=True)
 
 
 class Region(NamedTuple):
-    """What one mode rules, between two thickness ratios at every friction, (k,) each."""
+    """The region of one mode, between two thickness ratios at every friction, (k,) each."""
 
     mode: Mode
     mu: Array

@@ -69,7 +69,7 @@ def write_model(recording: Recording[Any], file: BinaryIO, kind: str) -> None:
 
 
 def mechanism_model(answer: Check[SpatialAssembly]) -> bytes:
-    """Return how blocks begin to fall and come back, as .glb; still where they stand."""
+    """Return a .glb of blocks that begin to fall and come back, or stay where they stand."""
     rates, assembly = answer.mechanism, answer.problem.assembly
     still = np.zeros((len(assembly.blocks), 3))
     rest = np.concatenate([assembly.centres / assembly.size, still], axis=1)

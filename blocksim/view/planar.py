@@ -24,7 +24,10 @@ SEAM = 0.6
 
 
 class PlanarView:
-    """Draws moments of a stage into a panel; `shown`, from the middle, finds place in it."""
+    """Draws moments of a stage into a panel.
+
+    `shown`, (k, 3): Points that find room in the panel, from the middle.
+    """
 
     def __init__(self, stage: Stage, panel: Panel, shown: Array) -> None:
         self._stage, self._panel = stage, panel

@@ -51,7 +51,7 @@ class ThrustLine:
 
 @dataclass(frozen=True, kw_only=True)
 class Titles:
-    """What a title block says; nothing where it is empty."""
+    """The words of a title block. Empty ones are not drawn."""
 
     project: str = ""
     part: str = ""
@@ -67,7 +67,7 @@ class Titles:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Sheet:
-    """What is drawn of a problem, by every writer of drawings.
+    """A problem as every writer of drawings draws it.
 
     `facts`: Lines below the title.
     `forces`, (joints, 2, 2): Of the state of greatest margin; drawn at each joint where there
@@ -96,7 +96,7 @@ class Sheet:
 
     @property
     def pressures(self) -> Sheet:
-        """The same, for a drawing of pressures along joints alone."""
+        """The sheet of pressures along joints alone."""
         lines = tuple(line for line in self.lines if line.name == "safest")
         return replace(self, lines=lines, forces=None, thrust=None, reactions=(), pressed=True)
 

@@ -113,7 +113,7 @@ def _draw(document: Any, sheet: Sheet) -> None:
 
 
 def _bodies(space: Any, sheet: Sheet) -> Array:
-    """Draw blocks, supports and joints; return corners of all of them."""
+    """Draw blocks, supports and joints, and return corners of all of them."""
     problem = sheet.problem
     corners = [
         _named(block.polygons, f"block {block.name or index}")
@@ -224,7 +224,7 @@ def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
 
 
 def _words(space: Any, sheet: Sheet, shown: Array, scale: float) -> float:
-    """Write title and facts below, and forces where they act; return how far down."""
+    """Write title and facts below, and forces where they act. Return how far down."""
     from ezdxf.enums import TextEntityAlignment
 
     mm = scale / 1e3

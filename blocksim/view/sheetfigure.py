@@ -55,7 +55,7 @@ LINES = {"min": (0, (6, 2)), "max": (0, (1, 1.2)), "safest": "-"}
 def sheet_figure(
     sheet: Sheet, *, column: tuple[float, float] | None = None, bare: bool = False
 ) -> Figure:
-    """Draw a sheet; its pdf and svg are to scale where they are printed at 100 %.
+    """Draw a sheet. Its pdf and svg are to scale where they are printed at 100 %.
 
     Every artist has a `gid` that says what it is: `block-3`, `support-0`, `joint-5`,
     `hinge-5`, `thrust-min-0`, `reaction-1`, `dimension-span`, `moved-3`, `scale`.
@@ -96,7 +96,7 @@ def sheet_figure(
 
 
 def _draw_drawing(axes: Axes, sheet: Sheet) -> Array:
-    """Draw all that is in metres; return points that have to find room."""
+    """Draw all that is in metres, and return points that have to find room."""
     problem = sheet.problem
     used = None if sheet.carried is None else sheet.carried.resultants
     if sheet.pressed and used is not None:
@@ -223,7 +223,7 @@ def _draw_angle(axes: Axes, each: Angle, layout: Layout) -> None:
 
 
 def _draw_numbers(axes: Axes, sheet: Sheet, layout: Layout) -> None:
-    """Write names of blocks on them, where they have room; and where x is 0 on the road."""
+    """Write names on blocks that have room for them, and mark x = 0 on the road."""
     problem, mm = sheet.problem, layout.mm
     for index, block in enumerate(problem.assembly.blocks):
         name = printable(block.name or str(index))
@@ -264,7 +264,7 @@ def _draw_thrust(axes: Axes, sheet: Sheet, layout: Layout, top: float) -> None:
 
 
 def _draw_reactions(axes: Axes, sheet: Sheet, layout: Layout, low: float) -> None:
-    """Draw what supports bear as arrows, with words; words alone where forces are drawn."""
+    """Draw what supports bear as arrows with words. Where forces are drawn, words suffice."""
     sizes = [float(np.hypot(*each.force)) for each in sheet.reactions]
     largest, unit, mm = max(sizes, default=0.0), sheet.unit, layout.mm
     for index, (each, size) in enumerate(zip(sheet.reactions, sizes, strict=True)):

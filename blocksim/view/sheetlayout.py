@@ -33,7 +33,7 @@ STEP, TRIES = 1.5, 12
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Layout:
-    """Where what is drawn lies on the page, and words that have their place on it.
+    """The place of a drawing on its page, and of the words so far.
 
     `scale`: A millimetre on paper is so many millimetres.
     `low`, (2,): What lies at the lower left corner of the page [m].
@@ -56,7 +56,7 @@ class Layout:
 
     @property
     def high(self) -> Array:
-        """What lies at the upper right corner [m]."""
+        """The point at the upper right corner [m]."""
         return self.low + np.array([self.paper.width, self.paper.height]) * self.mm
 
     def left_of_words(self, axes: Axes, line: Array) -> Array:

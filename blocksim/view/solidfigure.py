@@ -27,7 +27,7 @@ HEAD, FOOT = 74.0, 44.0
 
 
 def solid_figure(answer: Check[SpatialAssembly]) -> Figure:
-    """Draw blocks in space; of what falls, moved as its collapse begins."""
+    """Draw blocks in space. Those that fall are moved as their collapse begins."""
     assembly, rates = answer.problem.assembly, answer.mechanism
     rest = np.zeros((len(assembly.blocks), 6))
     rest[:, :3] = assembly.centres / assembly.size

@@ -43,8 +43,9 @@ FAINT = 1e-6
 
 
 class Solids:
-    """Pieces of blocks where they have gone, supports first [size]; edges so wide [pixels].
+    """Pieces of blocks where they have gone, supports first [size].
 
+    `line`: Width of edges [pixels].
     `size`: Length in units of which they are [m].
     `is_arch`: Whether hinges are told by the side on which they are.
     """
@@ -83,7 +84,7 @@ class Solids:
     def _piece(
         self, hulls: Sequence[Polyhedron], hull: Polyhedron, about: Array, tone: Colour
     ) -> Piece:
-        """Return a part of a block; parts of one block have no edge between them."""
+        """Return a part of a block. Parts of one block have no edge between them."""
         edge, line = mixed(tone, colour(INK), 0.72), self._line
         others = [each for each in hulls if each is not hull]
 
@@ -136,7 +137,7 @@ class Solids:
 
 
 def _off(points: Array, normal: Array, hull: Polyhedron) -> float:
-    """How far a joint is off the face of a part that looks as it does."""
+    """Return how far a joint is off the face of a part with the same normal."""
     normals, offsets = hull.planes
     off = np.abs(points @ normals.T - offsets).max(axis=0)
     return float(np.where(normals @ normal > ALONG, off, np.inf).min())
@@ -163,7 +164,7 @@ def supports_of(assembly: SpatialAssembly, low: Array, high: Array) -> list[Poly
 
 
 def _cut(hull: Polyhedron, low: Array, high: Array) -> Polyhedron | None:
-    """Return the box around a support, cut off beyond what is shown; or itself if within."""
+    """Return a support, or the box around it cut off beyond what is shown."""
     if (hull.box[0] >= low).all() and (hull.box[1] <= high).all():
         return hull
     lower, upper = np.maximum(hull.box[0], low), np.minimum(hull.box[1], high)

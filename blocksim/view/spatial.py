@@ -27,7 +27,10 @@ RINGS = 60
 
 
 class SpatialView:
-    """Draws the moments of a stage into a panel, in perspective; `shown` finds place in it."""
+    """Draws moments of a stage into a panel, in perspective.
+
+    `shown`, (k, 3): Points that find room in the panel, from the middle.
+    """
 
     def __init__(self, stage: Stage | SolidStage, panel: Panel, shown: Array) -> None:
         self._stage = stage

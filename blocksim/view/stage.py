@@ -110,14 +110,14 @@ class Stage(Timeline):
 
     @cached_property
     def carried(self) -> Carried | None:
-        """What it carries at rest; None where that is not known, or takes long to find."""
+        """Forces and margins at rest, or None where they take long to find."""
         problem = self.recording.problem
         small = problem.is_arch or len(self.assembly.joints) <= SOUGHT
         return carried_of(problem) if small else None
 
     @cached_property
     def thrust(self) -> tuple[Array, ...]:
-        """Lines of thrust at rest, by limit analysis, (k, 2); none that leave the picture."""
+        """Lines of thrust at rest by limit analysis, (k, 2), that stay in the picture."""
         problem, carried = self.recording.problem, self.carried
         if carried is None or carried.forces is None or not is_chained(problem):
             return ()

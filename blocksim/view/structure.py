@@ -67,7 +67,7 @@ def _closed(polygon: Array) -> Array:
 
 
 def supports_shown(problem: Problem) -> list[list[Array]]:
-    """Cut supports off near the blocks, into convex parts; one not known is a strip."""
+    """Return convex parts of supports near the blocks. An unknown support is a strip."""
     assembly = problem.assembly
     box, extent = _around(problem)
     bodies = [
@@ -146,7 +146,7 @@ def fill_outlines(problem: Problem) -> list[tuple[Array, bool]]:
 
 
 def clipped_line(ends: Array, low: float, high: float) -> Array:
-    """Cut a line from left to right, (2, 2), off at two places along x; empty beyond."""
+    """Cut a line from left to right, (2, 2), off at two places along x. Beyond it is empty."""
     (x0, y0), (x1, y1) = ends.tolist()
     start, stop = max(x0, low), min(x1, high)
     if start >= stop:
@@ -202,7 +202,7 @@ def draw_structure(
     mechanism: Array | None = None,
     states: Sequence[JointState] | None = None,
 ) -> list[Array]:
-    """Draw fill, supports, blocks, how they move, and joints; return points of all of it."""
+    """Draw fill, supports, blocks, how they move, and joints. Return points of all of it."""
     corners = np.concatenate([block.vertices for block in problem.assembly.blocks])
     extent = float(np.ptp(corners, axis=0).max())
     shown = [corners, *draw_fill(axes, problem), *draw_supports(axes, problem)]
@@ -273,7 +273,7 @@ def draw_mechanism(
 
 
 def draw_states(axes: Axes, problem: Problem, states: Sequence[JointState]) -> None:
-    """Colour joints that take part; dots mark the ends that stay closed, bars what slides."""
+    """Colour joints that take part. Dots mark ends that stay closed, bars what slides."""
     for index, (joint, state) in enumerate(zip(problem.assembly.joints, states, strict=True)):
         if state is JointState.CLOSED:
             continue

@@ -17,7 +17,7 @@ from blocksim.simulation.verdict import Verdict
 
 
 class Style(NamedTuple):
-    """How a mode or a method is drawn.
+    """The look of a mode or a method.
 
     `colour`: Of points.
     `tint`: Of regions: the same, lightened.
@@ -30,7 +30,7 @@ class Style(NamedTuple):
 
     @property
     def ink(self) -> str:
-        """Of words on the tint or on paper."""
+        """Colour of words on the tint or on paper."""
         return mix(self.colour, "#000000", 0.35)
 
 
@@ -66,7 +66,7 @@ UNNAMED = Style("#000000", "#ffffff", "*")
 
 
 def style_of_method(name: str) -> Style:
-    """Return the style of a method, where they are compared; each method's file says it."""
+    """Return the look of a method among others, which its own file says."""
     if name not in METHODS:
         return UNNAMED
     method = METHODS[name]

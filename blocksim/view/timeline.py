@@ -37,7 +37,7 @@ NOWHERE = np.empty(0)
 
 
 class Moment(NamedTuple):
-    """Where everything is at one time, y upwards, z towards the viewer.
+    """Blocks and joints at one time, y upwards, z towards the viewer.
 
     `turns`, `places`, (blocks, 3, 3) and (blocks, 3): Turns of blocks since they were built,
         and their centres.
@@ -93,7 +93,7 @@ class Timeline(ABC):
         return Moment(time, *upright(poses), joints, self.statics_at(time))
 
     def point_at(self, moment: Moment, block: int, arm: Array) -> Array:
-        """Where a point of a block is that lies so far from its centre as built [size]."""
+        """Return the place of a point of a block, given from its centre as built [size]."""
         return moment.places[block] + moment.turns[block] @ UPRIGHT @ arm
 
     @cached_property
@@ -128,7 +128,7 @@ class Timeline(ABC):
 
     @cached_property
     def speed(self) -> float:
-        """Speed of the fastest corner as it ends [m/s]; 0 where blocks have lain still."""
+        """Speed of the fastest corner at the end [m/s]: 0 where blocks have lain still."""
         times, poses = self.recording.times, self.recording.poses
         last = int(np.searchsorted(times, self.end, "right")) - 1
         if last == 0:
@@ -224,7 +224,7 @@ class Placing:
 
 
 class SeenJoints:
-    """States of joints, looked at in frames; corners below `low` lie on the ground."""
+    """States of joints, as frames show them. Corners below `low` lie on the ground."""
 
     def __init__(
         self, recording: Recording, placing: Placing, frames: Sequence[int], low: float

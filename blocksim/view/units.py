@@ -15,7 +15,7 @@ KILO = 1e3
 
 @dataclass(frozen=True, kw_only=True)
 class ForceUnit:
-    """In what forces are told: a unit in N, over the depth where that is one, and a note."""
+    """A unit of force in N, over the depth where all blocks have the same, and a note."""
 
     newtons: float
     name: str
@@ -42,7 +42,7 @@ def force_unit(problem: Problem[Any]) -> ForceUnit:
 
 
 def common_depth(problem: Problem[Any]) -> float | None:
-    """Return the depth [m] that all blocks of the plane have; None where there is none."""
+    """Return the depth that all blocks of the plane have [m], or None."""
     if problem.in_space:
         return None
     depths = problem.assembly.depths * problem.assembly.size
@@ -50,7 +50,7 @@ def common_depth(problem: Problem[Any]) -> float | None:
 
 
 def unit_weight(problem: Problem[Any]) -> float | None:
-    """Return the (median) unit weight of the blocks [N/m^3]; None where none was given."""
+    """Return the median unit weight of the blocks [N/m^3], or None where none was given."""
     if not problem.weighed:
         return None
     if problem.maker is not None:

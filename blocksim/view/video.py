@@ -38,7 +38,7 @@ DRAWN = (*JOINTS.values(), THRUST, INK, QUIET, PAPER, GROUND)
 
 
 class Frames(Protocol):
-    """What a film is made of."""
+    """The frames of a film."""
 
     width: int
     height: int
@@ -83,7 +83,7 @@ def render(
 
 
 def write_film(film: Frames, out: AnyPath, progress: Progress = silent) -> None:
-    """Encode frames into an .mp4 or .gif, whole or not at all; refuse too long ones."""
+    """Encode frames into an .mp4 or .gif, whole or not at all. Refuse too many of them."""
     _require_bounded(film, Path(out).suffix.removeprefix("."))
     write = _mp4 if Path(out).suffix == ".mp4" else _gif
     write_whole(out, lambda file: write(film, file, progress))

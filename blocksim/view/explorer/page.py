@@ -153,7 +153,7 @@ def _iso_lines(weight: Weight) -> list[dict[str, Any]]:
 
 
 def _points(mu: Array, eta: Array) -> list[list[float]]:
-    """Points to draw, to a hundredth of a pixel; level stretches keep their ends."""
+    """Return points to a hundredth of a pixel. Level stretches keep only their ends."""
     points = np.round(np.column_stack([mu, eta]), 5)
     steps = np.diff(points, axis=0)
     level = (steps[1:, 1] == 0) & (steps[:-1, 1] == 0)

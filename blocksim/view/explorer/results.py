@@ -29,7 +29,7 @@ def read_results(path: AnyPath) -> list[dict[str, Any]]:
 
 
 def _result(row: dict[str, Any]) -> dict[str, Any] | None:
-    """Check a row, and return what the page shows of it; None where it has no bracket."""
+    """Check a row, and return what the page shows of it, or None without a bracket."""
     low, high = row["eta_low"], row["eta_high"]
     if low is None:
         return None
