@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import asdict, replace
 from pathlib import Path
+from typing import Any
 
 import click
 
+from blocksim.ask.bracket import Bracket
 from blocksim.ask.bracket import bracket as ask_bracket
 from blocksim.ask.check import check as ask_check
 from blocksim.ask.options import Options
 from blocksim.blocks.joints import joint_names
+from blocksim.blocks.problem import Problem
 from blocksim.cli.acting import Crossed, Loading
 from blocksim.cli.arguments import option
 from blocksim.cli.built import Given
@@ -68,12 +71,10 @@ def check(
         from blocksim.cli.cases import asked_of_cases
 
         refuse({"joint": joint, "must_rest": must_rest, "proof": proof}, why=OF_ONE)
-        options: Options = {
-            "method": method, "settings": settings_of(settings), "reduce": reduce
-        }  # fmt: skip
-        found = asked_of_cases(cases, scene, given, loading, options, spatial=spatial)
-        answer_with(lambda: cases_record(found), lambda: cases_lines(found), as_json=as_json)
-        raise click.exceptions.Exit(EXIT_CODES[found.governing.answer.verdict])
+        options = Options(method=method, settings=settings_of(settings), reduce=reduce)
+        told = asked_of_cases(cases, scene, given, loading, options, spatial=spatial)
+        answer_with(lambda: cases_record(told), lambda: cases_lines(told), as_json=as_json)
+        raise click.exceptions.Exit(EXIT_CODES[told.governing.answer.verdict])
     if scene is not None and is_many(scene):
         from blocksim.cli.many import check_each
 
@@ -86,11 +87,7 @@ def check(
     problem = anything_asked(scene, given, loading, spatial=spatial, thick=True)
     if problem.in_space:
         refuse({"joint": joint, "must_rest": must_rest})
-    at = None
-    if joint is not None:
-        names = joint_names(problem.assembly)
-        require(joint in names, "--joint", joint, f"one like {names[len(names) // 2]}")
-        at = names.index(joint)
+    at = _place_of(joint, problem)
     with named_options(), progress() as report:
         answer = ask_check(
             problem,
@@ -102,13 +99,23 @@ def check(
         )
         if at is not None:
             report(1.0, "thrust")
-        told = answer.carried if at is None else answer.carried_at(at)
-    found = answer.proof
-    write_proof(answer.method, () if found is None else (found,), proof)
+        carried = answer.carried if at is None else answer.carried_at(at)
+    write_proof(answer.method, () if answer.proof is None else (answer.proof,), proof)
     answer_with(
-        lambda: check_record(answer, told), lambda: check_lines(answer, told), as_json=as_json
+        lambda: check_record(answer, carried),
+        lambda: check_lines(answer, carried),
+        as_json=as_json,
     )
     raise click.exceptions.Exit(EXIT_CODES[answer.verdict])
+
+
+def _place_of(joint: str | None, problem: Problem) -> int | None:
+    """Return the place of a joint that is named by its two blocks, or None."""
+    if joint is None:
+        return None
+    names = joint_names(problem.assembly)
+    require(joint in names, "--joint", joint, f"one like {names[len(names) // 2]}")
+    return names.index(joint)
 
 
 def bracket(
@@ -167,13 +174,23 @@ def bracket(
         if push is None:
             answer = ask_bracket(problem, over=over, within=within, **options)
         else:
-            from blocksim.ask.push import first_to_fall, pushed_each_way
-
-            ways = pushed_each_way(problem, push)
-            answer = first_to_fall(
-                [ask_bracket(each, over=over, within=within, **options) for each in ways]
-            )
+            answer = _falls_first(problem, push, over, within, options)
     write_proof(answer.method, () if proof is None else answer.proofs, proof)
     if crossed.out is not None and not problem.in_space:
         write_curves(problem, answer.over, crossed.out, silent=as_json)
     answer_with(lambda: bracket_record(answer), lambda: bracket_lines(answer), as_json=as_json)
+
+
+def _falls_first(
+    problem: Problem,
+    push: float,
+    over: str | None,
+    within: tuple[float, float] | None,
+    options: Options,
+) -> Bracket[Any]:
+    """Search with a push to either side, and return the bracket in which it falls first."""
+    from blocksim.ask.push import first_to_fall, pushed_each_way
+
+    ways = pushed_each_way(problem, push)
+    found = [ask_bracket(each, over=over, within=within, **options) for each in ways]
+    return first_to_fall(found)

@@ -168,8 +168,7 @@ def validate_one(
     assert found is not None  # noqa: S101
     in_motion = below = above = recording = None
     if found.eta_low is not None:
-        under = found.eta_low if found.centre is None else found.centre * (1 - ASIDE)
-        thin = maker.but(eta=under)
+        thin = maker.but(eta=found.centre * (1 - ASIDE) if found.centre else found.eta_low)
         seen = observe(thin.problem(), engine)
         in_motion, below = observed_mode(seen.joints_in_motion, _shape(thin)), seen.verdict
         recording = seen.motion.recording if seen.motion else None
