@@ -19,7 +19,10 @@ from blocksim.arch.answers import ArchBracket
 from blocksim.arch.circular import ETA_MAX, Arch
 from blocksim.arch.theory import least_thickness
 from blocksim.ask.bracket import Bracket
+from blocksim.ask.cases import Cases
 from blocksim.ask.check import Check, check
+from blocksim.ask.crossing import Crossing
+from blocksim.blocks.maker import Kind
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_record
 from blocksim.common.files import AnyPath, json_text
@@ -27,6 +30,8 @@ from blocksim.common.words import printable
 from blocksim.kinds.circular import CircularArch
 from blocksim.report.answers import bracket_record, check_record
 from blocksim.report.answerwords import bracket_lines, check_lines
+from blocksim.report.cases import cases_lines, cases_record
+from blocksim.report.crossing import crossing_lines, crossing_record
 from blocksim.report.problems import (
     arch_size_lines,
     described,
@@ -57,14 +62,14 @@ def dict_of(shown: object) -> dict[str, Any]:
     Returns: Of an answer what `--json` prints; of a problem its structure file, in space what
         answers say of it; of a recording what it shows, without its poses.
     """
-    record, _, _ = _KNOWN[type(shown)]
-    return json.loads(json_text(record(shown)))
+    thing, (record, _, _) = _known(shown)
+    return json.loads(json_text(record(thing)))
 
 
 def lines_of(shown: object) -> list[str]:
     """Return a thing in words, as the command line prints it: a head and labelled lines."""
-    _, lines, _ = _KNOWN[type(shown)]
-    return lines(shown)
+    thing, (_, lines, _) = _known(shown)
+    return lines(thing)
 
 
 def figure_of(shown: object) -> Figure:
@@ -73,8 +78,8 @@ def figure_of(shown: object) -> Figure:
     Returns: Of a check with its forces or its mechanism; of the least thickness of an arch the
         arch of that thickness; of a recording its last frame.
     """
-    _, _, figure = _KNOWN[type(shown)]
-    return figure(shown)
+    thing, (_, _, figure) = _known(shown)
+    return figure(thing)
 
 
 def film_of(shown: object, path: AnyPath, **options: Any) -> None:
@@ -210,18 +215,34 @@ def _recording_figure(recording: Recording) -> Figure:
     return Film([recording], height=TALL).figure()
 
 
-_KNOWN: dict[
-    type,
-    tuple[
-        Callable[[Any], Mapping[str, object]],
-        Callable[[Any], list[str]],
-        Callable[[Any], Figure],
-    ],
-] = {
+def _crossing_figure(answer: Crossing) -> Figure:
+    from blocksim.view.curvefigure import envelope_figure
+
+    return envelope_figure(answer)
+
+
+def _cases_figure(answer: Cases) -> Figure:
+    return _check_figure(answer.governing.answer)
+
+
+_Ways = tuple[
+    Callable[[Any], Mapping[str, object]], Callable[[Any], list[str]], Callable[[Any], "Figure"]
+]
+
+
+def _known(shown: object) -> tuple[object, _Ways]:
+    """Return a thing, a maker as the problem that it makes, and how it is told and drawn."""
+    thing = cast("Kind[Any]", shown).problem() if isinstance(shown, Kind) else shown
+    return thing, _KNOWN[type(thing)]
+
+
+_KNOWN: dict[type, _Ways] = {
     Arch: (_arch_record, _arch_lines, _arch_figure),
     Problem: (_problem_record, _problem_lines, _problem_figure),
     Check: (check_record, check_lines, _check_figure),
     Bracket: (bracket_record, bracket_lines, _bracket_figure),
+    Crossing: (crossing_record, crossing_lines, _crossing_figure),
+    Cases: (cases_record, cases_lines, _cases_figure),
     Recording: (recording_record, _recording_lines, _recording_figure),
 }
 """How each thing is told, as JSON and in words, and drawn."""

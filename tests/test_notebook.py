@@ -21,6 +21,8 @@ from running import inside
 
 import blocksim
 from blocksim import Arch, CircularArch, bracket, check, collapse, load_structure, structure_of
+from blocksim.ask.crossing import crossing
+from blocksim.blocks.vehicles import vehicle_of
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")
@@ -28,6 +30,9 @@ with warnings.catch_warnings():
 
 ARCH = Arch(half_angle=math.radians(90), eta=0.12, voussoirs=27)
 THIN = replace(ARCH, eta=0.1)
+BRIDGE = CircularArch(
+    span=8, rise=3, thickness=0.45, voussoirs=15, friction=0.6, density=22_000
+)
 BLOCKS = [
     {"id": "floor", "vertices": [[-2, -1], [4, -1], [4, 0], [-2, 0]], "fixed": True},
     {"id": "low", "vertices": [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]},
@@ -44,6 +49,11 @@ def shown() -> dict[str, Any]:
     return {
         "arch": ARCH,
         "problem": problem,
+        "maker": BRIDGE,
+        "crossing": crossing(BRIDGE.problem(), vehicle_of("1@0")),
+        "cases": blocksim.check_cases(
+            [blocksim.Case(name="alone", problem=BRIDGE.problem(), factors=blocksim.Factors())]
+        ),
         "arch check": blocksim.check(CircularArch.of(THIN, friction=0.7)),
         "check": check(problem.with_load(0.45)),
         "arch bracket": blocksim.bracket(
@@ -75,7 +85,10 @@ def formatted(shown: dict[str, Any]) -> Callable[[str], dict[str, str]]:
 
 
 Formatted = Callable[[str], dict[str, str]]
-NAMES = ("arch", "problem", "arch check", "check", "arch bracket", "bracket", "recording")
+NAMES = (
+    *("arch", "problem", "arch check", "check", "arch bracket", "bracket"),
+    *("crossing", "cases", "recording"),
+)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -103,6 +116,9 @@ def test_ipython_shows_words_and_a_drawing(
     [
         ("arch", ["alpha 90 deg, eta 0.12, 27 voussoirs", "span 1.88 r, rise 0.94 r"]),
         ("problem", ["&lt;script&gt;x&lt;/script&gt;", "2 blocks, 2 joints, mu 0.6"]),
+        ("maker", ["Circular arch", "15 blocks, 16 joints, mu 0.6"]),
+        ("crossing", ["LOAD FACTOR: least", "axles at -1.17"]),
+        ("cases", ["STANDS", "governed by alone"]),
         ("arch check", ["COLLAPSES", "rrr, purely rotational", "friction angle 34.992 deg"]),
         ("check", ["COLLAPSES", "factor at collapse 0.4", "&lt;script&gt;"]),
         ("arch bracket", ["LEAST ETA 0.10672", "static limit analysis"]),
