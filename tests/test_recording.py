@@ -25,6 +25,7 @@ def recording(frames: int = 4) -> Recording:
 
 PROBLEM = header_of(recording())["problem"]
 BUILT = PROBLEM["assembly"]
+ON_NO_BLOCK = {"force": [0, 1], "blocks": [99], "point": None, "per_weight": False}
 
 
 def test_roundtrip_is_exact(tmp_path: Path) -> None:
@@ -148,14 +149,47 @@ def altered(path: Path, **changes: object) -> None:
         ({"problem": {**PROBLEM, "gravity": [0.0, "down", 0.0]}}, "written by blocksim"),
         ({"problem": {**PROBLEM, "assembly": {**BUILT, "size": 0}}}, "written by blocksim"),
         ({"problem": {**PROBLEM, "assembly": {**BUILT, "joints": [{}]}}}, "written by"),
+        ({"problem": {**PROBLEM, "title": 3}}, "written by blocksim"),
+        ({"problem": {**PROBLEM, "load": "much"}}, "written by blocksim"),
+        ({"problem": {**PROBLEM, "origin": {"kind": "circular-arch", "half_angle": "x"}}}, ""),
+        ({"problem": {**PROBLEM, "notes": 5}}, "written by blocksim"),
+        ({"problem": {**PROBLEM, "gravity": [0.0, -1e300, 0.0]}}, "written by blocksim"),
+        ({"problem": {**PROBLEM, "moves": [{"support": 9}]}}, "written by blocksim"),
+        ({"problem": {**PROBLEM, "dead": [ON_NO_BLOCK]}}, "written by blocksim"),
+        ({"problem": {**PROBLEM, "assembly": {**BUILT, "joints": BUILT["joints"][1:-1]}}},
+         "of blocks that stand on something"),
         ({"settings": {"unknown": 1}}, "written by blocksim simulate"),
         ({"settings": None}, "written by blocksim simulate"),
     ],
-)
+)  # fmt: skip
 def test_altered_contents(tmp_path: Path, changes: dict[str, object], words: str) -> None:
     path = tmp_path / "run.npz"
     altered(path, **changes)
     assert words in refused(path)
+
+
+@pytest.mark.parametrize(
+    ("what", "field", "value"),
+    [
+        ("blocks", "centre", ["inf", 0.0]),
+        ("blocks", "name", 7),
+        ("blocks", "centre", [0.0, 1e29]),
+        ("joints", "after", True),
+        ("joints", "before", 0.0),
+        ("joints", "inner", [1e29, 0.0]),
+        ("joints", "faces", [[[1e29, 0.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 0.0]]]),
+        ("joints", "gap", "inf"),
+        ("joints", "support", False),
+        ("supports", "polygons", [[[0.0, 0.0], [1e29, 0.0], [0.0, 1.0]]]),
+    ],
+)
+def test_an_assembly_of_a_stranger_is_checked(
+    what: str, field: str, value: object, tmp_path: Path
+) -> None:
+    first, *others = BUILT[what] or [{"name": ""}]
+    assembly = {**BUILT, what: [{**first, field: value}, *others]}
+    altered(tmp_path / "run.npz", problem={**PROBLEM, "assembly": assembly})
+    refused(tmp_path / "run.npz")
 
 
 @pytest.mark.parametrize(

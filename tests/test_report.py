@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import re
 from collections import Counter
@@ -205,7 +206,13 @@ def test_drawing_of_what_stands() -> None:
 
 
 def test_written_with_the_rest(tmp_path: Path) -> None:
-    write_results([ROW], tmp_path)
+    tmp_path = tmp_path / "deep" / "out"
+    made = write_results([ROW], tmp_path)
+    names = {"report.html", "validate.json", "validate.csv", "map.png", "map.svg"}
+    assert {path.name for path in made} == {path.name for path in tmp_path.iterdir()} == names
+    with (tmp_path / "validate.csv").open(newline="") as file:
+        (line,) = csv.DictReader(file)
+    assert (line["eta_limit"], line["miss"]) == (str(ROW.eta_limit), "")
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     links = re.findall(r'<a href="#row-1" aria-label="1, semicircle"', page)
     assert len(links) == 2  # the point and its label

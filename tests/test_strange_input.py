@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import io
 import math
 import os
@@ -230,25 +229,12 @@ def test_no_recording_is_written_that_would_not_be_read(
     assert [each.name for each in tmp_path.iterdir()] == ["a.npz"]
 
 
-def test_blocks_that_stand_on_nothing_are_no_recording(tmp_path: Path) -> None:
-    header, times, poses = _good()
-    header = copy.deepcopy(header)
-    assembly = header["problem"]["assembly"]
-    inner = [each for each in assembly["joints"] if min(each["before"], each["after"]) >= 0]
-    assert 0 < len(inner) < len(assembly["joints"])
-    assembly["joints"] = inner
-    path = tmp_path / "a.npz"
-    path.write_bytes(packed(header, times, poses))
-    with pytest.raises(InputError, match="of blocks that stand on something"):
-        load_recording(path)
-
-
-@pytest.mark.parametrize(("kind", "slow"), [("mp4", "1000"), ("gif", "1000")])
-def test_a_film_is_bounded_before_it_is_begun(kind: str, slow: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("kind", ["mp4", "gif"])
+def test_a_film_is_bounded_before_it_is_begun(kind: str, tmp_path: Path) -> None:
     header, times, poses = _good()
     (tmp_path / "a.npz").write_bytes(packed(header, times * 10, poses))
     out = str(tmp_path / f"o.{kind}")
-    done = blocksim("render", str(tmp_path / "a.npz"), "--out", out, "--slow", slow)
+    done = blocksim("render", str(tmp_path / "a.npz"), "--out", out, "--slow", "1000")
     assert "must be at most 600 s long: less slow, or of a shorter recording" in one_line(done)
     assert [each.name for each in tmp_path.iterdir()] == ["a.npz"]
 
@@ -281,56 +267,6 @@ def test_a_table_of_a_long_recording_is_refused(
         assert "at most 10 as" in one_line(
             blocksim("render", str(tmp_path / "a.npz"), "--out", out)
         )
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"title": 3},
-        {"load": "much"},
-        {"origin": {"kind": "circular-arch", "half_angle": "x"}},
-        {"notes": 5},
-        {"gravity": [0.0, -1e300, 0.0]},
-        {"moves": [{"support": 9}]},
-        {"dead": [{"force": [0, 1], "blocks": [99], "point": None, "per_weight": False}]},
-    ],
-)
-def test_a_problem_of_a_stranger_is_checked(change: dict[str, Any], tmp_path: Path) -> None:
-    header, times, poses = _good()
-    header = {**header, "problem": {**header["problem"], **change}}
-    (tmp_path / "a.npz").write_bytes(packed(header, times, poses))
-    out = str(tmp_path / "o.svg")
-    one_line(blocksim("render", str(tmp_path / "a.npz"), "--out", out))
-
-
-@pytest.mark.parametrize(
-    ("what", "field", "value"),
-    [
-        ("blocks", "centre", ["inf", 0.0]),
-        ("blocks", "name", 7),
-        ("blocks", "centre", [0.0, 1e29]),
-        ("joints", "after", True),
-        ("joints", "before", 0.0),
-        ("joints", "inner", [1e29, 0.0]),
-        ("joints", "faces", [[[1e29, 0.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 0.0]]]),
-        ("joints", "gap", "inf"),
-        ("joints", "support", False),
-        ("supports", "polygons", [[[0.0, 0.0], [1e29, 0.0], [0.0, 1.0]]]),
-    ],
-)
-def test_an_assembly_of_a_stranger_is_checked(
-    what: str, field: str, value: object, tmp_path: Path
-) -> None:
-    header, times, poses = copy.deepcopy(_good())
-    entries = header["problem"]["assembly"][what]
-    if not entries:
-        entries.append({"name": ""})
-    entries[0][field] = value
-    (tmp_path / "a.npz").write_bytes(packed(header, times, poses))
-    said = one_line(
-        blocksim("render", str(tmp_path / "a.npz"), "--out", str(tmp_path / "o.svg"))
-    )
-    assert "recording" in said
 
 
 # Names.
