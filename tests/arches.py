@@ -68,6 +68,13 @@ def arch_at(
     return Arch(half_angle=alpha, eta=eta, voussoirs=count, weight=weight)
 
 
+def problem_at(
+    ratio: float, angle: float, mu: float, count: int, weight: str = "centreline"
+) -> Problem:
+    """The same as a problem."""
+    return CircularArch.of(arch_at(ratio, angle, mu, count, weight), mu).problem()
+
+
 def bracket_at(
     angle: float,
     mu: float,

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import contextlib
+import csv
 import io
+import json
 import subprocess
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 from unittest import mock
 
 from blocksim import MissingPart, cli
@@ -52,6 +55,19 @@ def inside(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProc
     if absent and part.removeprefix("blocksim: ") in ENGINES:
         raise MissingPart(part.removeprefix("blocksim: "), remedy)
     return subprocess.CompletedProcess(arguments, code, out.getvalue(), complaints.getvalue())
+
+
+def answered(*arguments: str, code: int | None = 0, cwd: Path | None = None) -> dict[str, Any]:
+    """What a command says with `--json`, and ends with that code, or with any."""
+    done = inside(*arguments, "--json", cwd=cwd)
+    assert code is None or done.returncode == code, done.stderr
+    return json.loads(done.stdout)
+
+
+def csv_rows(path: Path) -> list[dict[str, str]]:
+    """Rows of a table."""
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
 
 
 def started(*arguments: str) -> subprocess.Popen[bytes]:

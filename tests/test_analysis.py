@@ -19,6 +19,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 from arches import least
+from running import csv_rows
 from scipy.spatial.transform import Rotation
 from worlds import Quality, Simulation
 
@@ -128,8 +129,7 @@ def test_pulses_overturn_a_block_where_housner_says(tmp_path: Path) -> None:
         "stands",
         "collapses",
     ]
-    with (tmp_path / "shaking_map.csv").open(newline="") as file:
-        told = list(csv.DictReader(file))
+    told = csv_rows(tmp_path / "shaking_map.csv")
     assert [row["structure"] for row in told] == ["block"] * 4 + ["arch"] * 4
     assert {len(row["code"]) for row in told} == {12}
     # Below the acceleration of its static limit the arch does not move.
@@ -169,8 +169,7 @@ def test_arches_on_spreading_supports(tmp_path: Path) -> None:
     values = [value for _, value in result.curve]
     assert values == sorted(values)
     assert len(values) == 3
-    with (tmp_path / "spreading.csv").open(newline="") as file:
-        assert [row["known"] for row in csv.DictReader(file)][1] == ""
+    assert [row["known"] for row in csv_rows(tmp_path / "spreading.csv")][1] == ""
 
 
 def test_every_study_is_listed_with_its_claim() -> None:
@@ -195,8 +194,7 @@ def test_what_a_study_takes_are_its_options(
 @pytest.mark.long
 def test_modes_at_the_onset_are_those_of_limit_analysis(tmp_path: Path) -> None:
     assert len(study("onset_modes").main(tmp_path, quick=True)) == 14
-    with (tmp_path / "onset_modes_direct.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows(tmp_path / "onset_modes_direct.csv")
     assert [row["mode"] for row in rows] == [row["mode_limit"] for row in rows]
     assert "rsr" in {row["mode"] for row in rows}
     assert {row["verdict"] for row in rows} == {"collapses"}
@@ -231,8 +229,7 @@ def test_few_bodies_answer_as_all_blocks_do(tmp_path: Path) -> None:
         assert row["whole"] == row["merged"] == right
         assert row["bodies"] <= row["all_blocks"]
     assert any(row["bodies"] < row["all_blocks"] for row in rows)
-    with (tmp_path / "merging_pymunk.csv").open(newline="") as file:
-        assert len(list(csv.DictReader(file))) == 4
+    assert len(csv_rows(tmp_path / "merging_pymunk.csv")) == 4
 
 
 @pytest.mark.long
@@ -243,8 +240,7 @@ def test_costs_are_measured_and_answers_right(tmp_path: Path) -> None:
         assert 0 <= cost.median_s <= cost.longest_s
         assert cost.error <= 5e-4
     assert costs[-1].error <= 5e-9
-    with (tmp_path / "costs.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows(tmp_path / "costs.csv")
     assert [row["method"] for row in rows] == [cost.method for cost in costs]
     assert {len(row["code"]) for row in rows} == {12}
     assert {row["version"] for row in rows} == {blocksim.__version__}
@@ -257,8 +253,7 @@ def test_structures_with_known_answers_are_answered_right(tmp_path: Path) -> Non
     assert len(result.lines) == 11
     assert result.worst_error < 1e-6
     assert (result.asked, result.false, result.undecided) == (19, 0, 0)
-    with (tmp_path / "structure_cases.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows(tmp_path / "structure_cases.csv")
     assert [row["case"] for row in rows] == [line.case for line in result.lines]
     assert "0 false, 0 undecided" in study_of.table(result)
 
@@ -287,8 +282,7 @@ def test_rubble_is_solid_and_gains_no_energy(tmp_path: Path) -> None:
         assert row["overlap"] < module.ALLOWED
         assert max(row["gain"], row["own_gain"]) < module.GAIN
         assert row["thrown"] == 0.0
-    with (tmp_path / "rubble_direct.csv").open(newline="") as file:
-        assert [row["kind"] for row in csv.DictReader(file)] == ["arch", "wall"]
+    assert [row["kind"] for row in csv_rows(tmp_path / "rubble_direct.csv")] == ["arch", "wall"]
 
 
 def test_overlap_of_rubble_would_be_seen() -> None:

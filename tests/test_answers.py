@@ -12,7 +12,7 @@ import pytest
 from arches import least
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from running import inside
+from running import answered, inside
 
 from blocksim import Arch, CircularArch, JointState, Mode, Verdict, bracket, check, simulate
 
@@ -88,7 +88,7 @@ def test_the_published_schema_is_that_of_the_code() -> None:
 
 
 def test_what_is_not_as_the_schema_says_is_seen() -> None:
-    told = json.loads(inside("check", *ARCH.split(), "--json").stdout)
+    told = answered("check", *ARCH.split())
     check = SCHEMA["$defs"]["Check"]
     assert wrong(told, check) == []
     joint = {**told["joints"][0], "ends": [["left", 0.0]]}

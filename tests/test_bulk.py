@@ -14,7 +14,7 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from running import inside
+from running import answered, inside
 from space_cases import box, is_over, problem_of, tower
 
 import blocksim
@@ -349,9 +349,7 @@ load = 0.0
 def test_a_file_of_cases_is_one_table_one_page_and_json(folder: Path) -> None:
     path, subject = folder / "cases.toml", str(folder / "column.json")
     path.write_text(CASES)
-    done = inside("check", subject, "--cases", str(path), "--json")
-    assert done.returncode == 0, done.stderr
-    told = json.loads(done.stdout)
+    told = answered("check", subject, "--cases", str(path))
     wind = 1.5 * 5_000 * TALL / (0.9 * WEIGHT * WIDE / 2)
     crane = 4_000 * 1.5 / ((WEIGHT + 20_000) * WIDE / 2)
     # On a table that tilts, weight turns about the toe, and slides.

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 from typing import Any
 
 import numpy as np
 import pytest
 from own_bridge import Bridge, thrusts_of_half
-from running import inside
+from running import answered, inside
 
 import blocksim
 from blocksim import Arch, CircularArch
@@ -35,11 +34,6 @@ def by_hand(share: float = 1.0) -> tuple[float, float]:
     parts = [(-down, turn / down) for down, turn in (each.sum(axis=0) for each in sums)]
     joints = [(arch.low[k], arch.high[k]) for k in range(30, -1, -2)]
     return thrusts_of_half(joints, parts, MU)
-
-
-def answered(*arguments: str) -> dict[str, Any]:
-    """What `--json` prints."""
-    return json.loads(inside(*arguments, "--json").stdout)
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 import pytest
-from running import PROGRAM
+from running import PROGRAM, answered
 from running import inside as blocksim
 
 from blocksim import load_recording
@@ -41,8 +41,7 @@ def test_check_answers_with_its_exit_code(
 
 
 def test_options_override_the_file() -> None:
-    done = blocksim("bracket", "semicircle", "--alpha", "125", "--mu", "0.9", "--json")
-    answer = json.loads(done.stdout)
+    answer = answered("bracket", "semicircle", "--alpha", "125", "--mu", "0.9")
     assert answer["arch"]["half_angle_deg"] == pytest.approx(125)
     assert answer["arch"]["mode_theory"] == "srr"
 
@@ -84,7 +83,7 @@ def test_options_that_may_be_given_twice_are_taken_twice() -> None:
     assert len(set(blocks)) == 4
     steps = ("--set", "hold_sweeps=20", "--set", "step=0.02")
     asked = (*ARCH, "--eta", "0.12", "--method", "pymunk")
-    reason = json.loads(blocksim("check", *asked, *steps, "--json").stdout)["reason"]
+    reason = answered("check", *asked, *steps, code=3)["reason"]
     assert "step 0.02 as given" in reason
     assert "hold_sweeps 20 as given" in reason
     assert "Pymunk" in (
@@ -144,8 +143,7 @@ def test_settings_of_an_engine_can_be_given(tmp_path: Path) -> None:
     done = blocksim(*asked, "--set", "hold_sweeps=100")
     assert done.returncode == 3
     assert json.loads(done.stdout)["reason"].endswith("; hold_sweeps 100 as given")
-    done = blocksim("bracket", *ARCH, "--method", "direct", "--set", "step=0.005", "--json")
-    answer = json.loads(done.stdout)
+    answer = answered("bracket", *ARCH, "--method", "direct", "--set", "step=0.005")
     arch = answer["arch"]
     assert arch["eta_low"] < arch["eta_limit"] < arch["eta_high"]
     assert answer["reason"].endswith("; step 0.005 as given")

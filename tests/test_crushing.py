@@ -1,13 +1,11 @@
 """Load factors of blocks that crush, against a block's closed form and the rigid value."""
 
-import json
 from dataclasses import replace
-from typing import Any
 
 import pytest
 from kind_cases import KINDS, PLANAR
 from own_bridge import SPARED, Bridge
-from running import inside
+from running import answered, inside
 
 import blocksim
 
@@ -69,12 +67,6 @@ BRIDGE = Bridge(span=8.0, rise=3.0, thick=0.45, count=31, fill=0.5, heavy=22.0)
 LOADED = [*BRIDGE.options(), "--point-load", "2.01", "50"]
 
 
-def _asked(*options: str) -> dict[str, Any]:
-    done = inside(*options, "--json")
-    assert done.returncode in {0, 1}, done.stderr
-    return json.loads(done.stdout)
-
-
 @pytest.mark.parametrize("strength", [0.7, 1.0, 5.0])
 def test_an_arch_crushes_as_an_own_programme_says(strength: float) -> None:
     """Tangents of the law of strength, in a bridge put together apart, from both sides."""
@@ -82,21 +74,23 @@ def test_an_arch_crushes_as_an_own_programme_says(strength: float) -> None:
     most = BRIDGE.factor(live, strength=1e3 * strength)
     least = BRIDGE.factor(live, strength=1e3 * strength * SPARED)
     assert most - least < 1e-3
-    found = _asked("bracket", *LOADED, "--strength", str(strength), "--over", "load")
+    found = answered("bracket", *LOADED, "--strength", str(strength), "--over", "load")
     assert least - 1e-6 < found["limit"] < most + 1e-6
 
 
 def test_the_strength_that_is_needed_is_that_at_which_it_falls() -> None:
     """Of a load factor, and the load factor of that strength; stresses are at most it."""
-    found = _asked("check", *LOADED, "--load", "0.9", "--strength", "5")
+    found = answered("check", *LOADED, "--load", "0.9", "--strength", "5")
     needed = found["needed_strength_MPa"]
     assert found["verdict"] == "stands"
     assert not found["proved"]
     stress = [joint["stress_MPa"] for joint in found["joints"]]
     assert max(stress) == pytest.approx(needed, rel=1e-6)
-    again = _asked("bracket", *LOADED, "--strength", repr(needed), "--over", "load")
+    again = answered("bracket", *LOADED, "--strength", repr(needed), "--over", "load")
     assert again["limit"] == pytest.approx(0.9, rel=1e-6)
-    less = _asked("check", *LOADED, "--load", "0.9", "--strength", repr(0.999 * needed))
+    less = answered(
+        "check", *LOADED, "--load", "0.9", "--strength", repr(0.999 * needed), code=1
+    )
     assert less["verdict"] == "collapses"
     assert less["mechanism"] is not None
 
@@ -112,9 +106,9 @@ def test_what_crushes_under_its_dead_load_is_told() -> None:
 
 
 def test_the_thrust_of_joints_that_crush_has_a_smaller_range() -> None:
-    rigid = _asked("check", *BRIDGE.options())
-    found = _asked("check", *BRIDGE.options(), "--strength", "0.5")
-    strong = _asked("check", *BRIDGE.options(), "--strength", "500")
+    rigid = answered("check", *BRIDGE.options())
+    found = answered("check", *BRIDGE.options(), "--strength", "0.5")
+    strong = answered("check", *BRIDGE.options(), "--strength", "500")
     ends = [[each[f"thrust_{end}_kN"] for end in ("min", "max")] for each in (rigid, found)]
     assert ends[0][0] < ends[1][0] < ends[1][1] < ends[0][1]
     for end, exact in zip(("min", "max"), ends[0], strict=True):

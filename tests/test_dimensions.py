@@ -11,7 +11,7 @@ import pytest
 from arches import least
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
-from running import inside
+from running import answered, inside
 
 from blocksim import Arch, CircularArch, load
 
@@ -55,9 +55,7 @@ def test_a_tape_on_the_voussoirs_measures_the_same(degrees: float) -> None:
 
 
 def test_an_engineers_arch_in_one_command() -> None:
-    done = inside("check", *ASKED, "--json")
-    assert done.returncode == 0
-    told = json.loads(done.stdout)
+    told = answered("check", *ASKED)
     radius = 25 / 6 + 0.45 / 2
     expected = {
         "span_m": 8.0,
@@ -93,7 +91,7 @@ def test_words_give_both_forms() -> None:
 
 
 def test_a_bracket_answers_in_metres() -> None:
-    told = json.loads(inside("bracket", *ASKED, "--json").stdout)
+    told = answered("bracket", *ASKED)
     arch = told["arch"]
     assert arch["fixed_line"] == "intrados"
     # The intrados has this radius, whatever thickness was given.
@@ -105,13 +103,13 @@ def test_a_bracket_answers_in_metres() -> None:
 
 def test_without_a_thickness_the_line_that_was_measured_stays() -> None:
     asked = ("--span", "8", "--rise", "3", "--friction-angle", "35", "--voussoirs", "31")
-    told = json.loads(inside("bracket", *asked, "--json").stdout)
+    told = answered("bracket", *asked)
     assert told["arch"]["fixed_line"] == "intrados"
     thickness = told["limit"]
     # On the same intrados an arch of that thickness has that ratio.
     radius = 25 / 6 + thickness / 2
     assert thickness / radius == pytest.approx(told["arch"]["eta_limit"], rel=1e-13)
-    at_ratio = json.loads(inside("check", *asked, "--ratio", "1.5", "--json").stdout)
+    at_ratio = answered("check", *asked, "--ratio", "1.5")
     eta = at_ratio["arch"]["eta"]
     assert eta == pytest.approx(1.5 * told["arch"]["eta_limit"], rel=1e-13)
     assert at_ratio["problem"]["span_m"] == pytest.approx(8, rel=EXACT)
@@ -134,22 +132,22 @@ def test_a_file_in_metres(tmp_path: Path) -> None:
     arch = load(path).maker.shape
     assert arch.half_angle == pytest.approx(ALPHA, rel=EXACT)
     assert (arch.weight, arch.specific_weight) == ("sector", 22_000)
-    one = json.loads(inside("check", str(path), "--json").stdout)
-    two = json.loads(inside("check", *ASKED, "--unit-weight", "22", "--json").stdout)
+    one = answered("check", str(path))
+    two = answered("check", *ASKED, "--unit-weight", "22")
     assert one.pop("problem") == {**two.pop("problem"), "title": "circular-arch"}
     assert {**one, "wall_s": 0} == {**two, "wall_s": 0}
     # One measure given instead of the file's: the others stay.
-    told = json.loads(inside("check", str(path), "--thickness", "0.6", "--json").stdout)
+    told = answered("check", str(path), "--thickness", "0.6")
     wanted = {"span_m": 8.0, "rise_m": 3.0, "thickness_m": 0.6}
     assert {key: told["problem"][key] for key in wanted} == pytest.approx(wanted, rel=EXACT)
-    told = json.loads(inside("check", str(path), "--alpha", "90", "--json").stdout)
+    told = answered("check", str(path), "--alpha", "90", code=1)
     assert told["arch"]["half_angle_deg"] == 90
     assert told["problem"]["radius_m"] == arch.radius
 
 
 def test_structures_take_an_angle_of_friction_and_a_unit_weight(tmp_path: Path) -> None:
     def told(*options: str) -> dict[str, object]:
-        return json.loads(inside("check", *options, "--json").stdout)
+        return answered("check", *options)
 
     heavy = told("column", "--friction-angle", "35", "--unit-weight", "25")
     light = told("column", "--mu", "0.5")

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from arches import arch_at
+from arches import arch_at, problem_at
 from worlds import DIRECT, Blocks, ContactProblem, Simulation, joint_motion, observe, onset
 
 from blocksim import CircularArch, Problem, Verdict
@@ -95,9 +95,7 @@ def test_friction_forces_oppose_the_slip_at_the_edge_of_the_cone():
 
 
 def test_over_its_residual_the_answer_is_undecided():
-    simulation = Simulation.of(
-        CircularArch.of(arch_at(0.9, 90, 0.9, 20), 0.9).problem(), "direct"
-    )
+    simulation = Simulation.of(problem_at(0.9, 90, 0.9, 20), "direct")
     settings = replace(simulation.settings, residual=0.0)
     simulation = replace(simulation, settings=settings)
     world = simulation.world()
@@ -158,9 +156,7 @@ def test_deeper_overlap_than_allowed_is_undecided():
     def hold(world):
         world.hold(1)
 
-    simulation = Simulation.of(
-        CircularArch.of(arch_at(0.9, 90, 0.9, 12), 0.9).problem(), "direct"
-    )
+    simulation = Simulation.of(problem_at(0.9, 90, 0.9, 12), "direct")
     # Below the round-off of corners at rest nothing could pass.
     strict = replace(simulation, settings=replace(simulation.settings, penetration=-1.0))
     world = strict.world()

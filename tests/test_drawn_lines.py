@@ -15,7 +15,7 @@ from drawn import GROUND, new_dxf, structure, svg_of, written
 from hypothesis import given
 from hypothesis import strategies as st
 from own_bridge import thrusts_of_half
-from running import inside
+from running import answered, inside
 
 from blocksim import InputError, Reading, bracket, load_structure
 from blocksim.reading.curves import arc, bezier, ellipse
@@ -23,7 +23,6 @@ from blocksim.reading.loops import loops_of
 
 BED = {"layer": "0-Auflager"}
 RIB = {"layer": "A-Mauerwerk.Rippe"}
-LAYERS = {"blocks": ["a-mauerwerk.rippe"], "supports": ["0-AUFLAGER"]}
 INNER, OUTER, HALF, GAP = 4000.0, 4400.0, 2000.0, 0.5
 """Radii of a pointed arch, half its span, and the gaps between its voussoirs [mm]."""
 FINE = 500
@@ -328,7 +327,7 @@ def test_a_tilted_table_is_borne_by_the_world(tmp_path: Path) -> None:
     """A wall of 24 kN on a table at 5 deg: its supports bear 24 kN up, and nothing sideways."""
     for subject in (("wall",), (str(stack(tmp_path)),)):
         asked = ("check", *subject, "--mu", "0.7", "--unit-weight", "10", "--tilt", "5")
-        said = json.loads(inside(*asked, "--json").stdout)
+        said = answered(*asked)
         up = sum(each["vertical_kN"] for each in said["reactions"])
         across = [each["horizontal_kN"] for each in said["reactions"]]
         assert up == pytest.approx(said["weight_kN"], rel=1e-9)

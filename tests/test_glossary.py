@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 from typing import Any
 
 import pytest
-from running import inside
+from running import answered
 
 DOCS = Path(__file__).parent.parent / "docs"
 GLOSSARY = (DOCS / "glossary.md").read_text(encoding="utf-8")
@@ -58,7 +57,7 @@ def test_there_are_the_words_of_an_engineer() -> None:
     ],
 )
 def test_every_printed_quantity_is_a_word_of_the_glossary(asked: str) -> None:
-    record = json.loads(inside(*asked.split(), "--json").stdout)
+    record = answered(*asked.split(), code=None)
     assert sorted(key for key in keys(record) - OF_THE_ANSWER if not told(key)) == []
 
 

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from kind_cases import CATENARY, FACTORS, KINDS, LEAST, PIERS, PLANAR, STACKS
-from running import inside
+from running import answered, inside
 from scipy.special import ellipe
 from structure_cases import case, of_each_kind, scenes
 
@@ -498,7 +498,7 @@ def test_a_kind_of_ones_own_reaches_the_command_line(
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
     own = ("cubes_of_mine:Cube", "--mu", "0.5", "--with", "side=2")
-    told = json.loads(inside("bracket", *own, "--over", "tilt", "--json").stdout)
+    told = answered("bracket", *own, "--over", "tilt")
     assert told["limit"] == pytest.approx(math.degrees(math.atan(0.5)), rel=1e-9)
     refused = inside("check", "cubes_of_mine:Ball", "--mu", "0.5").stderr
     assert refused.startswith("blocksim: kind = 'cubes_of_mine:Ball': must be")

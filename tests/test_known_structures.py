@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 import re
@@ -13,6 +12,7 @@ from typing import Any
 import pytest
 from kind_cases import KINDS
 from report_rows import ROW
+from running import answered, csv_rows
 from running import inside as blocksim
 from space_cases import NAMES as SPACE_NAMES
 from space_cases import case as space_case
@@ -103,12 +103,12 @@ def test_every_kind_of_question_is_there_and_names_are_free() -> None:
 
 
 def test_a_structure_is_asked_by_its_name(tmp_path: Path) -> None:
-    answer = json.loads(blocksim("check", "oppenheim_7", "--load", "0.372", "--json").stdout)
+    answer = answered("check", "oppenheim_7", "--load", "0.372", code=1)
     assert answer["verdict"] == "collapses"
     assert answer["load_factor"] == pytest.approx(0.3705338738135736, rel=1e-9)
     moves = [at for at, each in enumerate(answer["joints"]) if each["state"] != "closed"]
     assert moves == [0, 3, 5, 7]
-    found = json.loads(blocksim("bracket", "gable", "--over", "mu", "--json").stdout)
+    found = answered("bracket", "gable", "--over", "mu")
     assert found["limit"] == pytest.approx(6 / 13, rel=1e-9)
     picture = tmp_path / "pointed.svg"
     assert blocksim("render", "pointed_e0_25", "--out", str(picture)).returncode == 0
@@ -122,7 +122,7 @@ def test_a_structure_is_asked_by_its_name(tmp_path: Path) -> None:
 
 def test_only_arches_have_an_intrados() -> None:
     """A column turns about the right-hand end of its base; an arch says which edge stays."""
-    told = json.loads(blocksim("check", "column_six_drums", "--tilt", "16", "--json").stdout)
+    told = answered("check", "column_six_drums", "--tilt", "16", code=1)
     base = told["joints"][0]
     assert base["state"] == "hinge"
     assert base["hinge"] == pytest.approx(max(base["ends"]))
@@ -130,22 +130,20 @@ def test_only_arches_have_an_intrados() -> None:
     assert {joint["hinge"] and 1 for joint in told["joints"][1:]} == {None}
     lines = blocksim("check", "column_six_drums", "--tilt", "16").stdout
     assert re.search(r"joints +floor-drum 1 hinge\n", lines)
-    arch = json.loads(blocksim("check", "oppenheim_7", "--load", "0.372", "--json").stdout)
+    arch = answered("check", "oppenheim_7", "--load", "0.372", code=1)
     states = [joint["state"] for joint in arch["joints"] if joint["state"] != "closed"]
     assert states == ["hinge-intrados", "hinge-extrados"] * 2
     assert arch["joints"][3]["hinge"] == arch["joints"][3]["ends"][1]
 
 
 def test_events_of_spreading_are_told_in_json() -> None:
-    found = json.loads(
-        blocksim("bracket", "spread_90_12_20", "--over", "spread", "--json").stdout
-    )
+    found = answered("bracket", "spread_90_12_20", "--over", "spread")
     first, last = found["events"]
     assert (first["value"], first["what"]) == (0.0, "hinges")
     assert [joint["a"] for joint in first["joints"]] == ["4", "10", "16"]
     assert last["what"] == "collapse"
     assert last["value"] == pytest.approx(found["limit"]) == pytest.approx(0.0166808, rel=1e-5)
-    other = json.loads(blocksim("bracket", "oppenheim_7", "--over", "load", "--json").stdout)
+    other = answered("bracket", "oppenheim_7", "--over", "load")
     assert other["events"] is None
 
 
@@ -280,8 +278,7 @@ def test_rows_are_written(tmp_path: Path, rows: list[StructureRow]) -> None:
     assert part["settings"]["aside"]["direct"] == 0.001
     assert document["not_asked"][0]["scenarios"] == ["catenary"]
     assert "drawn" not in part["rows"][0]
-    with (tmp_path / "structures.csv").open(newline="") as file:
-        lines = list(csv.DictReader(file))
+    lines = csv_rows(tmp_path / "structures.csv")
     assert lines[1]["hinges"] == "0 3 5 7"
     assert lines[1]["at_high"] == "collapses"
     assert lines[0]["published"] == "0.37"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 import tomllib
@@ -13,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from arches import least
-from running import inside
+from running import answered, csv_rows, inside
 
 from blocksim import Mode
 from blocksim.arch.theory import landmarks
@@ -64,7 +63,7 @@ def test_modes_that_coincide_are_all_told() -> None:
             math.degrees(PRINTED["table1"][name]["alpha"]), rel=1e-13
         )
         assert math.tan(math.radians(each["friction_angle_deg"])) == pytest.approx(each["mu"])
-    told = json.loads(inside("check", "fig18_triple_point", "--json").stdout)["arch"]
+    told = answered("check", "fig18_triple_point", code=1)["arch"]
     assert set(told["modes_theory"]) == {"rrr", "srr", "rrs", "ss"}
     assert told["modes_theory"][0] == told["mode_theory"]
     words = "bracket --alpha 145 --mu 1.6 --method theory --json"
@@ -157,8 +156,7 @@ def test_lines_divide_the_regions(weight: str) -> None:
 def test_the_numbers_are_a_csv_file(weight: str, tmp_path: Path) -> None:
     out = tmp_path / "map.csv"
     assert inside("map", "--weight", weight, "--out", str(out)).returncode == 0
-    with out.open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows(out)
     record = asked(weight)
     points = [*record["landmarks"], *record["special_angles"],
               *(each for line in record["lines"].values() for each in line)]  # fmt: skip

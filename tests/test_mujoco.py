@@ -10,7 +10,7 @@ from typing import cast
 
 import numpy as np
 import pytest
-from arches import arch_at
+from arches import arch_at, problem_at
 from worlds import Simulation, get_engine, hold, least_motion, observe
 
 from analysis.structure_cases import answered, questions
@@ -47,7 +47,7 @@ def test_a_block_too_light_for_it_is_refused() -> None:
     ("ratio", "expected"), [SIDES[0], pytest.param(*SIDES[1], marks=pytest.mark.long)]
 )
 def test_let_go_it_does_what_the_onset_test_says(ratio: float, expected: Verdict) -> None:
-    seen = observe(CircularArch.of(arch_at(ratio, 90, 0.7, 7), 0.7).problem(), "mujoco")
+    seen = observe(problem_at(ratio, 90, 0.7, 7), "mujoco")
     assert seen.verdict is expected
     assert seen.motion.verdict is expected
 
@@ -59,9 +59,7 @@ def test_let_go_it_does_what_the_onset_test_says(ratio: float, expected: Verdict
 )
 def test_a_thin_shallow_arch_is_begun_with_forces(ratio: float, expected: str) -> None:
     """The same arch: the exact limit of its voussoirs is the truth."""
-    seen = observe(
-        CircularArch.of(arch_at(ratio, 30, 0.7, 27), 0.7).problem(), "mujoco", moving=False
-    )
+    seen = observe(problem_at(ratio, 30, 0.7, 27), "mujoco", moving=False)
     assert seen.verdict.value == expected
 
 
@@ -116,7 +114,7 @@ def test_contacts_press_as_they_are_told_and_prove_it(ratio: float, *, rests: bo
 
     The latter is the least motion, found without MuJoCo: here nothing slides.
     """
-    problem = CircularArch.of(arch_at(ratio, 90, 0.7, 10), 0.7).problem()
+    problem = problem_at(ratio, 90, 0.7, 10)
     world = cast("TakesForces", Simulation.of(problem, "mujoco").world())
     least = least_motion(problem)
     forces = equilibrium(problem).forces if rests else least.forces
@@ -132,9 +130,7 @@ def test_contacts_press_as_they_are_told_and_prove_it(ratio: float, *, rests: bo
 
 def test_forces_of_another_structure_are_not_kept() -> None:
     """Those of an arch 1 % above its least thickness, in one 1 % below."""
-    stands, falls = (
-        CircularArch.of(arch_at(ratio, 90, 0.7, 10), 0.7).problem() for ratio in (1.01, 0.99)
-    )
+    stands, falls = (problem_at(ratio, 90, 0.7, 10) for ratio in (1.01, 0.99))
     forces = equilibrium(stands).forces
     assert forces is not None
     world = cast("TakesForces", Simulation.of(falls, "mujoco").world())

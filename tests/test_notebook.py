@@ -17,7 +17,7 @@ from xml.etree import ElementTree
 
 import matplotlib
 import pytest
-from running import inside
+from running import answered
 
 import blocksim
 from blocksim import Arch, CircularArch, bracket, check, collapse, load_structure, structure_of
@@ -210,7 +210,7 @@ def test_to_dict_is_what_the_command_line_prints(shown: dict[str, Any], tmp_path
         "bracket": ("bracket", str(path), "--over", "tilt"),
     }
     for name, words in asked.items():
-        told = json.loads(inside(*words, "--json").stdout)
+        told = answered(*words, code=None)
         mine = shown[name].to_dict()
         # Seconds it took, and what `auto` took, which the program was asked.
         assert {**mine, "wall_s": 0, "reason": 0} == {**told, "wall_s": 0, "reason": 0}

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
-from arches import arch_at, bracket_at
+from arches import arch_at, bracket_at, problem_at
 from worlds import ContactProblem, Quality, Settings, Simulation, hold, observe
 
 from blocksim import CircularArch, Problem, Verdict, check, simulate
@@ -57,11 +57,8 @@ def test_brackets_close_where_there_are_two_answers(case: Case) -> None:
 def test_what_was_given_is_told() -> None:
     """The answer says whether it took forces of equilibrium to find rest."""
     case = TWO_ANSWERS[-1]
-    assert (
-        "they were given"
-        in hold(CircularArch.of(arch_at(1.01, *case), case[1]).problem(), "pymunk").onset.reason
-    )
-    alone = hold(CircularArch.of(arch_at(1.01, 90.0, 0.7, 27), 0.7).problem(), "pymunk").onset
+    assert "they were given" in hold(problem_at(1.01, *case), "pymunk").onset.reason
+    alone = hold(problem_at(1.01, 90.0, 0.7, 27), "pymunk").onset
     assert alone.verdict is Verdict.STANDS
     assert alone.forces is None
 
@@ -73,8 +70,8 @@ def test_what_was_given_is_told() -> None:
 def test_bullet_keeps_forces_it_is_given(case: Case) -> None:
     """It keeps no impulses: joints press by themselves, and friction has to be found."""
     pytest.importorskip("pybullet", exc_type=ImportError)
-    below = hold(CircularArch.of(arch_at(0.9995, *case), case[1]).problem(), "pybullet").onset
-    above = hold(CircularArch.of(arch_at(1.0005, *case), case[1]).problem(), "pybullet").onset
+    below = hold(problem_at(0.9995, *case), "pybullet").onset
+    above = hold(problem_at(1.0005, *case), "pybullet").onset
     assert below.verdict is Verdict.COLLAPSES
     assert above.verdict is Verdict.STANDS
     assert "they were given" in above.reason
@@ -84,7 +81,7 @@ def test_pybullet_says_why_it_is_undecided() -> None:
     """Let go, it moves: blocks that can rest may do so, and Bullet forgets friction."""
     pytest.importorskip("pybullet", exc_type=ImportError)
     case = TWO_ANSWERS[-1]
-    seen = observe(CircularArch.of(arch_at(1.0005, *case), case[1]).problem(), "pybullet")
+    seen = observe(problem_at(1.0005, *case), "pybullet")
     assert seen.verdict is Verdict.UNDECIDED
     assert "friction may let it move, too" in seen.reason
     assert "released, it moved" in seen.reason
@@ -92,7 +89,7 @@ def test_pybullet_says_why_it_is_undecided() -> None:
 
 def test_what_cannot_be_found_is_said_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
     """Numbers that end in none give no verdict, and no reason says nan."""
-    problem = CircularArch.of(arch_at(1.01, 90, 0.7, 9), 0.7).problem()
+    problem = problem_at(1.01, 90, 0.7, 9)
     held = hold(problem, "direct")
     solve = ContactProblem.solve
 
@@ -143,7 +140,7 @@ class Creeping:
 
 def creeping(repeats: int) -> Simulation:
     """An arch in an engine whose arches creep."""
-    made = Simulation.of(CircularArch.of(arch_at(1.1, 90, 0.9, 5), 0.9).problem(), "direct")
+    made = Simulation.of(problem_at(1.1, 90, 0.9, 5), "direct")
     # As a whole it overlaps its supports by nothing: blocks slide along the springings.
     settings = replace(made.settings, sweeps=SWEEPS, repeats=repeats, rest=1e-5, noise=1.0)
     return replace(made, engine=replace(made.engine, build=Creeping), settings=settings)
@@ -185,7 +182,7 @@ def test_a_film_of_what_rests_is_no_film_of_a_fall(rests: bool) -> None:
 @pytest.mark.parametrize("below", [1e-8, 1e-6, 1e-4, 1e-2])
 def test_few_looks_suffice_and_none_is_too_late_for_the_mechanism(below: float) -> None:
     """What falls is first seen to have moved while the motion still is the mechanism."""
-    held = hold(CircularArch.of(arch_at(1 - below, 90, 0.7, 27), 0.7).problem(), "direct")
+    held = hold(problem_at(1 - below, 90, 0.7, 27), "direct")
     recording = held.release().recording
     moved = recording.displacement
     assert EARLY < moved[moved > EARLY][0] < 1.5 * EARLY
@@ -193,10 +190,6 @@ def test_few_looks_suffice_and_none_is_too_late_for_the_mechanism(below: float) 
 
 
 SIDES = [(0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)]
-
-
-def problem_at(ratio: float, angle: float, mu: float, count: int) -> Problem:
-    return CircularArch.of(arch_at(ratio, angle, mu, count), mu).problem()
 
 
 def moved_away(problem: Problem, distance: float) -> Problem:

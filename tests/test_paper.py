@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 import tomllib
@@ -16,7 +15,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
-from running import inside
+from running import csv_rows, inside
 from windows import Windows
 
 from blocksim import Mode
@@ -407,8 +406,7 @@ def test_the_command_writes_figures_numbers_and_a_page(tmp_path: Path) -> None:
     page = (out / "index.html").read_text("utf-8")
     assert re.findall(r'src="([^"]+)"', page) == ["fig01.png", "fig04.png"]
     assert "<b>Fig. 4.</b> Sliding of an inner joint" in page
-    with (out / "numbers.csv").open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows(out / "numbers.csv")
     assert len(rows) == 45
     assert max(float(row["relative_difference"]) for row in rows) <= 1e-13
     values = {row["name"]: float(row["printed"]) for row in rows}

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from arches import ARCHES as OF_ENGINES
-from arches import arch_at, held_in
+from arches import arch_at, held_in, problem_at
 from scipy.spatial.transform import Rotation
 from structure_cases import case, scenes
 from worlds import Engine, hold, observe
@@ -175,7 +175,7 @@ def test_an_arch_that_falls_stays_symmetric_and_falls_as_pymunk_has_it() -> None
 
     In pymunk with short steps: with its usual ones `direct` starts early.
     """
-    problem = CircularArch.of(arch_at(0.93, 90, 0.7, 9), 0.7).problem()
+    problem = problem_at(0.93, 90, 0.7, 9)
     bullet, fine = (
         simulate(problem, method=name, duration=2.0, settings=settings)
         for name, settings in (("pybullet", {}), ("pymunk", {"step": 0.002}))

@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from arches import ARCHES as OF_ENGINES
-from arches import arch_at, least
+from arches import arch_at, least, problem_at
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Simulation, get_engine, least_motion, observe, observed_mode, onset
@@ -87,12 +87,8 @@ def test_no_forces_to_begin_with_make_a_verdict(
     angle: float, mu: float, count: int, ratio: float, wrong: str, other: float
 ) -> None:
     """Forces of a thinner or a thicker arch: those that it would fall, or stand with."""
-    forces = least_motion(
-        CircularArch.of(arch_at(other, angle, mu, count), mu).problem()
-    ).forces
-    simulation = Simulation.of(
-        CircularArch.of(arch_at(ratio, angle, mu, count), mu).problem(), "pymunk"
-    )
+    forces = least_motion(problem_at(other, angle, mu, count)).forces
+    simulation = Simulation.of(problem_at(ratio, angle, mu, count), "pymunk")
     world = simulation.world()
     world.begin(forces)
     chosen = replace(simulation.settings, hold_sweeps=30_000, unaided=None)

@@ -22,7 +22,7 @@ from drawn import (
     write_dxf,
     written,
 )
-from running import inside
+from running import answered, inside
 
 from blocksim import InputError, Problem, Reading, bracket, check, load_structure, structure_of
 
@@ -342,7 +342,7 @@ def test_a_converted_drawing_is_the_same_problem(tmp_path: Path, told: np.ndarra
     assert out.read_text().count('{"id"') == 41
     table["live"] = [{"body": [1, 0]}]
     out.write_text(json.dumps(table))
-    assert json.loads(inside("check", str(out), "--json").stdout)["load_factor"] == (
+    assert answered("check", str(out))["load_factor"] == (
         pytest.approx(
             check(structure_of(structure(WALL) | {"live": table["live"]})).load_factor
         )

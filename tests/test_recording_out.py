@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from filelock import FileLock
 from recorded import accessor, parts_of
-from running import inside
+from running import csv_rows, inside
 from windows import new_page
 
 from blocksim import Recording, load_recording, simulate, structure_of
@@ -118,8 +118,7 @@ def test_csv_has_a_row_for_each_block_at_each_time(
     done = inside("render", str(saved), "--out", str(out))
     assert done.returncode == 0, done.stderr
     assert f"3 blocks, {len(fall.times)} frames, 2.01 s" in done.stdout
-    with out.open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows(out)
     assert list(rows[0]) == ["time_s", "block", "x_m", "y_m", "rotation_rad"]
     assert [row["block"] for row in rows] == NAMES * len(fall.times)
     read = np.array([[float(row[key]) for key in rows[0] if key != "block"] for row in rows])

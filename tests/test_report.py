@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import re
 from collections import Counter
@@ -14,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from report_rows import ARCH, ROW, rows, sliding
+from running import csv_rows
 
 from blocksim import Verdict
 from blocksim.report.motion import KEYS, SHOWN, UNIT, joints_of, recorded_drawing
@@ -210,8 +210,7 @@ def test_written_with_the_rest(tmp_path: Path) -> None:
     made = write_results([ROW], tmp_path)
     names = {"report.html", "validate.json", "validate.csv", "map.png", "map.svg"}
     assert {path.name for path in made} == {path.name for path in tmp_path.iterdir()} == names
-    with (tmp_path / "validate.csv").open(newline="") as file:
-        (line,) = csv.DictReader(file)
+    (line,) = csv_rows(tmp_path / "validate.csv")
     assert (line["eta_limit"], line["miss"]) == (str(ROW.eta_limit), "")
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     links = re.findall(r'<a href="#row-1" aria-label="1, semicircle"', page)

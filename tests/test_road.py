@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from running import inside
+from running import answered, inside
 from scipy.integrate import quad
 from structure_cases import case, scenes
 
@@ -52,9 +52,7 @@ def above(outer: float, half_angle: float, height: float) -> float:
 @pytest.mark.usefixtures("wide_window")
 def test_what_lies_on_the_road_is_told() -> None:
     loads = ("--point-load", "2", "50", "--patch-load", "-1.5", "-0.3", "30")
-    done = inside("check", *UNDER, *loads, "--json")
-    assert done.returncode == 0, done.stderr
-    told = json.loads(done.stdout)
+    told = answered("check", *UNDER, *loads)
     problem = told["problem"]
     ring = ALPHA * ((RADIUS + THICK / 2) ** 2 - (RADIUS - THICK / 2) ** 2)
     wanted = {
@@ -78,7 +76,7 @@ def test_what_lies_on_the_road_is_told() -> None:
 @pytest.mark.parametrize(("share", "code"), [(0.999, 0), (1.001, 1)])
 def test_an_engine_falls_where_the_load_factor_says(share: float, code: int) -> None:
     load = ("--point-load", "2", "50")
-    factor = json.loads(inside("check", *UNDER, *load, "--json").stdout)["load_factor"]
+    factor = answered("check", *UNDER, *load)["load_factor"]
     done = inside("check", *UNDER, *load, "--load", str(share * factor), "--method", "direct")
     assert done.returncode == code
 
@@ -136,10 +134,7 @@ SPANNED = (*OPTIONS[:8], "--friction-angle", "35", "--fill", "0.5")
 def test_two_patches_are_both_on_the_road() -> None:
     halves = ("--patch-load", "1", "1.5", "6", "--patch-load", "1.5", "2", "6")
     whole = ("--patch-load", "1", "2", "12")
-    said = [
-        json.loads(inside("bracket", *SPANNED, *each, "--over", "load", "--json").stdout)
-        for each in (halves, whole)
-    ]
+    said = [answered("bracket", *SPANNED, *each, "--over", "load") for each in (halves, whole)]
     assert said[0]["limit"] == pytest.approx(said[1]["limit"], rel=1e-9)
 
 
@@ -159,9 +154,9 @@ def test_what_is_on_the_road_is_let_go_drawn_and_bracketed(tmp_path: Path) -> No
     assert len(re.findall('id="fill-', drawn)) == 1
     assert not re.findall('id="dead-', drawn)
     assert "collapses, by limit" in drawn
-    told = json.loads(inside("bracket", *UNDER, *load, "--over", "load", "--json").stdout)
+    told = answered("bracket", *UNDER, *load, "--over", "load")
     assert told["low"] < collapse(problem).load_factor < told["high"]  # type: ignore[operator]
-    thin = json.loads(inside("bracket", *UNDER, "--json").stdout)
+    thin = answered("bracket", *UNDER)
     assert (thin["over"], thin["unit"]) == ("thickness", "m")
     assert thin["low"] < 0.45
 
@@ -234,7 +229,7 @@ def test_the_line_that_was_measured_stays_under_a_road(more: tuple[str, ...]) ->
     """The least thickness under fill and loads is where a check of that thickness changes."""
     line = "--span", "8", "--rise", "2.5", "--mu", "0.6", *more
     thick = "--thickness", "0.5"
-    least = json.loads(inside("bracket", *line, *thick, "--json").stdout)["limit"]
+    least = answered("bracket", *line, *thick)["limit"]
     codes = [
         inside("check", *line, "--thickness", repr(share * least)).returncode
         for share in (0.9999, 1.0001)

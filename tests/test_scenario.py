@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 from arches import least
-from running import inside
+from running import answered, inside
 
 from blocksim import Mode, load
 from blocksim.kinds.files import shipped_structures
@@ -105,7 +104,7 @@ def test_a_file_of_tables_is_still_read(tmp_path: Path) -> None:
         'title = "A"\nsource = "none"\n[arch]\nspan_m = 8\nrise_m = 3\nvoussoirs = 31\n'
         "unit_weight_kN_per_m3 = 22\n[contact]\nfriction_angle_deg = 35\n"
     )
-    told = json.loads(inside("check", str(path), "--json").stdout)["arch"]
+    told = answered("check", str(path), code=1)["arch"]
     assert told["eta"] == pytest.approx(0.99 * told["eta_limit"], rel=1e-14)
     for wrong in ("mu = 0.7", 'mu = "x"'):
         path.write_text(f"{path.read_text()}{wrong}\n")

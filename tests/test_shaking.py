@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 from rocking import block, on_pulse, on_record, rocks
-from running import inside
+from running import answered, inside
 from scipy.integrate import quad
 from structure_cases import case, scenes
 from sweeps import design_of, rows_of
@@ -280,7 +280,7 @@ def test_a_curve_and_a_table_are_written(tmp_path: Path) -> None:
     ]
     assert 'id="falls"' in curve.read_text()
     kept = ("--rows", str(tmp_path / "rows"), "--workers", "1")
-    said = json.loads(inside(*asked, *wide, *kept, "--json").stdout)
+    said = answered(*asked, *wide, *kept)
     assert len(list(read_rows(tmp_path / "rows"))) == 2
     assert [each["falls"] for each in said["rows"]] == [0.0, 1.0]
     assert said["verdicts"] == {str(record): ["stands", "collapses"]}

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from own_bridge import SPARED, Bridge
-from running import inside
+from running import answered, inside
 from scipy.integrate import quad
 from test_crossing import is_as_bad_as_said
 
@@ -104,11 +104,9 @@ def test_what_fill_bears_is_told_and_proved() -> None:
     asked = ("--fill-passive", "0.33", "--fill-friction-angle", "30")
     most = limit(*asked)
     for share, code in ((0.999, 0), (1.001, 1)):
-        done = inside(
-            "check", *BRIDGE.options(), *WHEEL, *asked, "--load", repr(share * most), "--json"
+        record = answered(
+            "check", *BRIDGE.options(), *WHEEL, *asked, "--load", repr(share * most), code=code
         )
-        assert done.returncode == code
-        record = json.loads(done.stdout)
         assert record["proved"]
         assert record["load_factor"] == pytest.approx(most, rel=1e-7)
         assert "the fill bears" in record["reason"]
@@ -181,9 +179,7 @@ def test_a_drawn_wall_under_fill_by_hand(tmp_path: Path) -> None:
     place = tmp_path / "wedge.json"
     place.write_text(json.dumps(WEDGE))
     asked = ("--fill", "1", "--fill-unit-weight", "18", "--fill-pressure", "0,0.4")
-    done = inside("check", str(place), *asked, "--json")
-    assert done.returncode == 0, done.stderr
-    record = json.loads(done.stdout)
+    record = answered("check", str(place), *asked)
     # Weight of fill: 3 m of 1 m, and 1 m of 2 m on average; the side from 1 to 3 m deep.
     fill = 18.0 * 0.5 * (3 * 1 + 1 * 2)
     assert record["problem"]["fill_weight_kN"] == pytest.approx(fill)
@@ -196,7 +192,7 @@ def test_a_drawn_wall_under_fill_by_hand(tmp_path: Path) -> None:
     reaction = json.loads(both.stdout)["reactions"][0]
     assert reaction["horizontal_kN"] == pytest.approx(0.0, abs=1e-9)
     # What spreads a load: less than half the way down the slope on each side.
-    spread = inside(
+    told = answered(
         "check",
         str(place),
         *asked[:4],
@@ -205,9 +201,7 @@ def test_a_drawn_wall_under_fill_by_hand(tmp_path: Path) -> None:
         "10",
         "--dispersal",
         "1:2",
-        "--json",
     )
-    told = json.loads(spread.stdout)
     assert told["problem"]["live_weight_kN"] == pytest.approx(10.0)
 
 

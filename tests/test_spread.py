@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 from itertools import combinations
@@ -13,8 +12,7 @@ import numpy as np
 import pytest
 from kind_cases import KINDS, PLANAR
 from own_bridge import Bridge, thrusts_of_half
-from running import inside
-from running import inside as blocksim
+from running import answered, csv_rows, inside
 from scipy.optimize import brentq
 from structure_cases import case
 from worlds import DIRECT, joint_motion
@@ -334,7 +332,7 @@ def test_supports_that_move_are_recorded_until_all_has_fallen(
 ) -> None:
     """The supports go apart evenly, until it falls near the way known; all comes to rest."""
     out = tmp_path / "run.npz"
-    done = blocksim("simulate", str(file), "--over", "spread", "--out", str(out))
+    done = inside("simulate", str(file), "--over", "spread", "--out", str(out))
     assert done.returncode == 0, done.stderr
     recording = load_recording(out)
     assert recording.problem.title == "circular-arch"
@@ -356,19 +354,13 @@ def test_supports_that_move_are_recorded_until_all_has_fallen(
     assert known < falls < known + 0.01 * 3
 
 
-def asked(*options: str, code: int = 0) -> dict[str, Any]:
-    done = inside(*options, "--json")
-    assert done.returncode == code, done.stderr
-    return json.loads(done.stdout)
-
-
 SLENDER = ("--with", "width=0.5", "--with", "drums=1", "--with", "drum_height=3")
 
 
 @pytest.mark.parametrize(("push", "code"), [("0.15", 0), ("0.1666", 0), ("0.1668", 1)])
 def test_a_column_tips_at_its_width_over_its_height(push: str, code: int) -> None:
     """0.5 m over 3 m: a sixth of its weight, both ways."""
-    told = asked("check", "column", "--mu", "0.7", *SLENDER, "--push", push, code=code)
+    told = answered("check", "column", "--mu", "0.7", *SLENDER, "--push", push, code=code)
     assert told["proved"]
     assert "it bears 0.166667 g either way" in told["reason"]
 
@@ -436,7 +428,7 @@ def test_an_arch_that_is_spread_has_its_least_thrust() -> None:
     x = np.array([block.centre[0] for block in part])
     # The crown's force is level where the arch is its own mirror image.
     thrust = float((weight * (x - haunch[0])).sum() / (crown[1] - haunch[1]))
-    told = asked(
+    told = answered(
         *("check", "--span", "8", "--rise", "3", "--thickness", "0.6", "--voussoirs", "14"),
         *("--mu", "0.7", "--unit-weight", "20", "--spread", str(spread)),
     )
@@ -462,8 +454,7 @@ def test_curves_are_written(tmp_path: Path) -> None:
             *("bracket", *arch, "--over", over, "--out", str(table), "--out", str(picture))
         )
         assert done.returncode == 0, done.stderr
-        with table.open(encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        rows = csv_rows(table)
         assert len(rows) > 10
         assert float(rows[0][name]) > 0
         assert ("to the left" if over == "push" else "least thrust") in picture.read_text()
@@ -472,7 +463,7 @@ def test_curves_are_written(tmp_path: Path) -> None:
 def test_a_portal_under_fill_thrusts_as_a_half_does() -> None:
     """By an own programme of half a ring, a pier and fill up to a level road."""
     asks = ("--mu", "0.6", "--unit-weight", "20", "--fill", "0.4", "--joint", "13-14")
-    told = asked("check", "portal", *asks)
+    told = answered("check", "portal", *asks)
     # Centreline of 1 m, 0.2 m thick; piers of 0.6 m from the intrados on, 1 m high.
     ring = Bridge(span=1.8, rise=0.9, thick=0.2, count=54, fill=0.4)
     halves = ring.dead()[26::-1, 1:]
@@ -526,7 +517,7 @@ def test_what_is_pushed_falls_where_it_falls_first(over: str) -> None:
     asked = *line, "--point-load", "1.5", "20"
     mu = () if over == "mu" else ("--mu", "0.7")
     start = mu or ("--mu", "0.9")
-    found = json.loads(inside("bracket", *asked, *start, "--over", over, "--json").stdout)
+    found = answered("bracket", *asked, *start, "--over", over)
     stands = -1.0 if found["stands"] == "low" else 1.0
     for side, code in ((stands, 0), (-stands, 1)):
         value = repr(found["limit"] * (1 + 1e-4 * side))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from running import answered
 from running import inside as blocksim
 
 from blocksim import load_recording
@@ -35,9 +36,7 @@ def stack(tmp_path: Path) -> str:
 
 
 def test_a_stack_is_checked_with_its_load_factor(stack: str) -> None:
-    done = blocksim("check", stack, "--json")
-    assert done.returncode == 0
-    answer = json.loads(done.stdout)
+    answer = answered("check", stack)
     assert answer["verdict"] == "stands"
     assert answer["load_factor"] == pytest.approx(FACTOR, rel=1e-9)
     assert answer["problem"]["blocks"] == 3
@@ -55,9 +54,9 @@ def test_a_stack_is_checked_with_its_load_factor(stack: str) -> None:
 def test_both_sides_of_its_load_factor(
     stack: str, method: str, share: float, code: int
 ) -> None:
-    done = blocksim("check", stack, "--load", str(share * FACTOR), "--method", method, "--json")
-    assert done.returncode == code
-    answer = json.loads(done.stdout)
+    answer = answered(
+        "check", stack, "--load", str(share * FACTOR), "--method", method, code=code
+    )
     states = [joint["state"] for joint in answer["joints"]]
     if code:
         # All three turn as one about the lower right corner.
@@ -79,8 +78,7 @@ def test_both_sides_of_its_load_factor(
 def test_brackets_over_load_tilt_and_friction(
     stack: str, over: str, load: float, exact: float, stands: str
 ) -> None:
-    done = blocksim("bracket", stack, "--over", over, "--load", str(load), "--json")
-    answer = json.loads(done.stdout)
+    answer = answered("bracket", stack, "--over", over, "--load", str(load))
     assert answer["limit"] == pytest.approx(exact, rel=1e-7)
     assert answer["low"] < exact < answer["high"]
     assert answer["stands"] == stands
@@ -104,7 +102,7 @@ def test_no_answer_is_beyond_the_range_given(
     """It changes at 0.4, over friction at 0.2 under half of that load."""
     load = ("--load", "0.2") if over == "mu" else ()
     words = ["--over", over, "--within", *map(str, within), "--method", method, *load]
-    answer = json.loads(blocksim("bracket", stack, *words, "--json").stdout)
+    answer = answered("bracket", stack, *words)
     assert {end: answer[end] for end in ends} == ends
 
 
@@ -140,7 +138,7 @@ def test_least_friction_of_a_wedge_beside_a_block_on_a_slope(tmp_path: Path) -> 
     ]
     path = tmp_path / "wedge.json"
     path.write_text(json.dumps({"friction": 0.9, "blocks": blocks}))
-    answer = json.loads(blocksim("bracket", str(path), "--over", "mu", "--json").stdout)
+    answer = answered("bracket", str(path), "--over", "mu")
     assert answer["limit"] == pytest.approx(wide, rel=1e-8)
     assert answer["low"] < wide < answer["high"]
 

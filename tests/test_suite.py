@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from half_arch import by_half
 from own_balance import SIDES, by_contact_forces, by_pyramids
-from running import inside
+from running import answered, inside
 from scipy.integrate import quad
 from scipy.spatial import Delaunay
 from scipy.spatial.transform import Rotation
@@ -293,7 +293,7 @@ def test_a_stranger_takes_part_by_files(tmp_path: Path) -> None:
         tokens = list(generate_tokens(file.readline))
     assert len({each.start[0] for each in tokens if each.type in {NAME, NUMBER, OP}}) <= 60
     subprocess.run([sys.executable, script, folder / "scenes", answers], check=True)
-    found = json.loads(inside("suite", "score", str(answers), "--json").stdout)
+    found = answered("suite", "score", str(answers))
     assert found["groups"]["sliding"]["levels"]["20"] == [2, 0, 6]
 
 
@@ -401,8 +401,7 @@ def test_right_answers_are_right_and_their_opposites_false(tmp_path: Path) -> No
     for asked in MOVING.values():
         poses = asked.poses.tolist()
         lines.append({"scene": asked.name, "seconds": 0.5, "poses": poses})
-    done = inside("suite", "score", written(tmp_path / "a.jsonl", lines), "--json")
-    found = json.loads(done.stdout)
+    found = answered("suite", "score", written(tmp_path / "a.jsonl", lines))
     assert found["nearest_level"] == 2
     assert found["groups"]["rocking"]["levels"]["0.1"] == [6, 0, 0]
     assert found["groups"]["stacks"]["levels"]["1"] == [0, 6, 0]
@@ -422,7 +421,7 @@ def test_poses_are_judged_by_their_last_corner(tmp_path: Path) -> None:
         frames.append([[x + share * scene.bound, y, 0.0]])
         line = {"scene": scene.name, "seconds": 0, "poses": frames}
         path = written(tmp_path / "a.jsonl", [HEAD, line])
-        found = json.loads(inside("suite", "score", path, "--json").stdout)
+        found = answered("suite", "score", path)
         counts.append(found["groups"]["sliding"]["levels"][f"{asked.level:g}"])
     assert counts == [[1, 0, 7], [0, 1, 7]]
 

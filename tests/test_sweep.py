@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 import sys
@@ -12,6 +11,7 @@ from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecu
 from pathlib import Path
 
 import pytest
+from running import csv_rows
 from running import inside as blocksim
 from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
 
@@ -217,8 +217,7 @@ def test_rows_of_earlier_versions_go_into_the_same_table(tmp_path: Path) -> None
     with ThreadPoolExecutor(1) as executor:
         sweep(design_of(tmp_path, KINDS_GRID), tmp_path, executor=executor)
     write_csv(tmp_path, tmp_path / "rows.csv")
-    with (tmp_path / "rows.csv").open(newline="") as file:
-        held = {row["id"]: row for row in csv.DictReader(file)}
+    held = {row["id"]: row for row in csv_rows(tmp_path / "rows.csv")}
     assert len(held) == 25
     assert held[str(old["id"])]["half_angle_deg"] == "90.0"
     assert sum(row["pier_width_m"] != "" for row in held.values()) == 24

@@ -17,7 +17,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rocking import on_shaking_ground
-from running import inside
+from running import answered, inside
 
 from blocksim import (
     Problem,
@@ -168,13 +168,11 @@ def test_a_record_of_three_columns(tmp_path: Path) -> None:
     path = tmp_path / "record.csv"
     path.write_text("time_s,acceleration_g,vertical_g\n0,0.2,0.1\n2,0.2,0.1\n")
     asked = ("check", "column", "--mu", "0.7", "--shake", str(path), "--method", "direct")
-    told = json.loads(inside(*asked, "--json").stdout)["problem"]["shake"]
+    told = answered(*asked)["problem"]["shake"]
     assert told == {
         "times_s": [0, 2], "accelerations_g": [0.2, 0.2], "verticals_g": [0.1, 0.1]
     }  # fmt: skip
-    twice = json.loads(inside(*asked, "--amplitude", "0.4", "--json").stdout)["problem"][
-        "shake"
-    ]
+    twice = answered(*asked, "--amplitude", "0.4", code=1)["problem"]["shake"]
     assert twice["accelerations_g"] == pytest.approx([0.4, 0.4])
     assert twice["verticals_g"] == pytest.approx([0.2, 0.2])
     assert "0.1 g upwards" in inside(*asked).stdout

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import json
 import math
 from importlib import import_module
 from pathlib import Path
@@ -11,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from arches import least
+from running import answered, csv_rows
 from running import inside as blocksim
 from scipy.optimize import brentq
 
@@ -27,8 +26,7 @@ FIGURES = Path(__file__).parent.parent / "analysis" / "figures"
 
 def rows(name: str) -> list[dict[str, str]]:
     """Rows of a study as they are kept."""
-    with (FIGURES / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+    return csv_rows(FIGURES / f"{name}.csv")
 
 
 def closed_end(n: int, alpha: float, mu: float, least: float) -> float | None:
@@ -319,7 +317,7 @@ def test_the_command_says_it() -> None:
         "  rest    it can rest, and friction may let it move as well; let go along that motion"
         in words
     )
-    found = json.loads(blocksim("check", *narrow, "--ratio", "1.5", *asked, "--json").stdout)
+    found = answered("check", *narrow, "--ratio", "1.5", *asked)
     assert found["rest"] == "must"
 
 
