@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from dataclasses import replace
@@ -464,6 +465,32 @@ def test_a_column_that_leans_falls_where_it_would_turn_over_its_edge(lean: float
         tilted = (f"--tilt {lean} --azimuth {way} --spatial" for way in (90, -90))
         for acts in (f"--lean {lean}", f"--lean {lean} --spatial", *tilted):
             assert inside(*asked.split(), *acts.split()).stdout.startswith(verdict), acts
+
+
+@pytest.mark.parametrize("azimuth", [0, 90, -143])
+@pytest.mark.parametrize("structure", ["tower", "skew-arch"])
+def test_a_push_is_borne_up_to_the_tangent_of_the_tilt(structure: str, azimuth: int) -> None:
+    """Gravity and a level push of all blocks are gravity on a tilted table, but stronger."""
+    limits: dict[str, float] = {}
+    for over in ("push", "tilt"):
+        asked = ("bracket", structure, "--mu", "0.7", "--over", over, "--azimuth", azimuth)
+        answer = json.loads(inside(*map(str, asked), "--json").stdout)
+        assert answer["proved"]
+        limits[over] = answer["limit"]
+    assert limits["push"] == pytest.approx(math.tan(math.radians(limits["tilt"])), rel=1e-7)
+    push = limits["push"]
+    for share, code in ((0.999, 0), (1.001, 1)):
+        asked = (
+            "check",
+            structure,
+            "--mu",
+            "0.7",
+            "--azimuth",
+            azimuth,
+            "--push",
+            share * push,
+        )
+        assert inside(*map(str, asked)).returncode == code
 
 
 @pytest.mark.parametrize("tilt", [0.0, -8.0])

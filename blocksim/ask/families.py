@@ -254,7 +254,7 @@ def _over_spread(problem: Problem) -> Family:
     )
 
 
-def _over_push(problem: Problem) -> Family:
+def _over_push(problem: Problem[Any]) -> Family[Any]:
     # It follows blocks that move.
     from blocksim.ask.push import asked, borne, borne_words, without_mass, worse
 
@@ -300,7 +300,7 @@ FAMILIES: dict[str, Callable[[Any], Family[Any]]] = {
     "amplitude": partial(_over_shaking, name="amplitude"),
     "duration": partial(_over_shaking, name="duration"),
 }
-IN_SPACE = ("load", "tilt", "mu")
+IN_SPACE = ("load", "tilt", "mu", "push")
 """Those that problems in space have."""
 
 

@@ -1,4 +1,4 @@
-"""Pushes sideways, both ways: how much is borne, and how that falls as it moves."""
+"""Pushes sideways, in the plane both ways: what is borne, and how that falls as it moves."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from blocksim.blocks.acting import push_on_all, with_push
+from blocksim.blocks.acting import push_on_all, sideways, with_push
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import bears_road
 from blocksim.common.checks import PUSH, require
-from blocksim.limit.capacity import collapse
+from blocksim.limit import collapse
 from blocksim.limit.displaced import Displaced
 
 if TYPE_CHECKING:
     from blocksim.ask.bracket import Bracket
 
 WAYS = {"right": 1.0, "left": -1.0}
-"""Names and signs of the two ways."""
+"""Names and signs of the two ways of the plane."""
 WAY = 5e-3
 """Way of the fastest corner in one step of a curve [size]."""
 DIGITS = 9
@@ -45,41 +45,50 @@ class Curve:
     ends: str
 
 
-def asked(problem: Problem, way: str) -> Problem:
+def ways_of(problem: Problem[Any]) -> dict[str, float]:
+    """Return names and signs of the ways: both in the plane, in space that of the azimuth."""
+    if not problem.in_space:
+        return {f"to the {way}": sign for way, sign in WAYS.items()}
+    return {f"towards {round(math.degrees(problem.azimuth), 9):g} deg from x": 1.0}
+
+
+def asked(problem: Problem[Any], way: str) -> Problem[Any]:
     """Return a problem of which the live load is a push by the weight of each block.
 
     What acts on it, live loads times their factor too, stays.
+
+    `way`: One of `ways_of`.
     """
     live = tuple(replace(load, force=problem.load * load.force) for load in problem.live)
     return replace(
         problem,
         dead=(*problem.dead, *(live if problem.load else ())),
-        live=(push_on_all(problem, [WAYS[way], 0.0]),),
+        live=(push_on_all(problem, ways_of(problem)[way] * sideways(problem)),),
         load=1.0,
         road=(),
     )
 
 
-def borne(problem: Problem) -> dict[str, float]:
+def borne(problem: Problem[Any]) -> dict[str, float]:
     """Return the push that is borne each way, by name [g]; below 0 where it falls without."""
     allowed = "left out where gravity leans or the ground shakes"
     require(problem.has_statics, "push", "given", allowed)
-    found = {way: collapse(asked(problem, way)).load_factor for way in WAYS}
+    found = {way: collapse(asked(problem, way)).load_factor for way in ways_of(problem)}
     return {way: -np.inf if each is None else float(each) for way, each in found.items()}
 
 
 def worse(both: Mapping[str, float]) -> str:
     """Return the way in which less is borne; of two alike the right."""
-    return min(both, key=lambda way: (round(both[way], DIGITS), way == "left"))
+    return min(both, key=lambda way: round(both[way], DIGITS))
 
 
 def borne_words(both: Mapping[str, float]) -> str:
     """Say what is borne both ways."""
     if max(both.values()) == -np.inf:
-        return "it bears no push either way"
-    if len({round(each, DIGITS) for each in both.values()}) == 1:
-        return f"it bears {both['right']:.6g} g either way"
-    said = ", ".join(f"{each:.6g} g to the {way}" for way, each in both.items())
+        return f"it bears no push {'either way' if len(both) > 1 else next(iter(both))}"
+    if len(both) > len({round(each, DIGITS) for each in both.values()}):
+        return f"it bears {min(both.values()):.6g} g either way"
+    said = ", ".join(f"{each:.6g} g {way}" for way, each in both.items())
     return f"it bears {said}"
 
 
@@ -88,16 +97,19 @@ def without_mass(problem: Problem) -> str:
     return "; fill and loads on the road are not pushed" if bears_road(problem) else ""
 
 
-def pushed_each_way(problem: Problem, share: float) -> tuple[Problem, ...]:
-    """Return a problem pushed to the right, and to the left; see `pushed`."""
-    return tuple(_pushed(problem, way, share, ", where it falls first") for way in WAYS)
+def pushed_each_way(problem: Problem[Any], share: float) -> tuple[Problem[Any], ...]:
+    """Return a problem pushed each of its ways; see `pushed`."""
+    ways = ways_of(problem)
+    why = ", where it falls first" if len(ways) > 1 else ""
+    return tuple(_pushed(problem, way, share, why) for way in ways)
 
 
-def _pushed(problem: Problem, way: str, share: float, why: str) -> Problem:
+def _pushed(problem: Problem[Any], way: str, share: float, why: str) -> Problem[Any]:
     """Return a problem that is pushed one way, and says so."""
     PUSH.require("push", share)
-    note = f"pushed by {share:g} g to the {way}{why}{without_mass(problem)}"
-    return replace(with_push(problem, WAYS[way] * share), notes=(*problem.notes, note))
+    note = f"pushed by {share:g} g {way}{why}{without_mass(problem)}"
+    across = ways_of(problem)[way] * share
+    return replace(with_push(problem, across), notes=(*problem.notes, note))
 
 
 def first_to_fall(answers: Sequence[Bracket[Any]]) -> Bracket[Any]:
@@ -119,12 +131,12 @@ def first_to_fall(answers: Sequence[Bracket[Any]]) -> Bracket[Any]:
     return min(answers, key=lambda answer: round(stands(answer), DIGITS))
 
 
-def pushed(problem: Problem, share: float) -> Problem:
+def pushed(problem: Problem[Any], share: float) -> Problem[Any]:
     """Return a problem that is pushed sideways by a share of the weight of each block.
 
-    To the side to which it bears less; a note says what it bears both ways.
+    To the side to which it bears less, in space towards its azimuth; a note says what it bears.
 
-    `problem`: In its plane, on ground at rest.
+    `problem`: On ground at rest; of the plane in it.
     `share`: [g]
     """
     both = borne(problem)
@@ -137,7 +149,7 @@ def curve(problem: Problem, way: str) -> Curve:
     The blocks turn about the hinges with which they begin to fall, however far, and by virtual
     work the push that balances them is known at each place. Other hinges might ask for less.
     """
-    given = asked(problem, way)
+    given = asked(problem, f"to the {way}")
     displaced, found = Displaced(given), collapse(given)
     factor, rates = found.load_factor, found.mechanism
     if factor is None or not np.isfinite(factor) or factor <= 0 or rates is None:

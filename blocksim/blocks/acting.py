@@ -56,9 +56,17 @@ def push_on_all(problem: Problem[Any], force: Sequence[float] | Array) -> Load:
     return Load(force=np.array(force, dtype=float), blocks=blocks, per_weight=True)
 
 
+def sideways(problem: Problem[Any]) -> Array:
+    """Return the way of pushes: to the right, in space level towards the azimuth; (2 or 3,)."""
+    if problem.in_space:
+        return np.array([math.cos(problem.azimuth), math.sin(problem.azimuth), 0.0])
+    return np.array([1.0, 0.0])
+
+
 def with_push(problem: Problem[Blocks], across: float) -> Problem[Blocks]:
     """Return a problem pushed across besides, by a share of the weight of each block [g]."""
-    return replace(problem, dead=(*problem.dead, push_on_all(problem, [across, 0.0])))
+    push = push_on_all(problem, across * sideways(problem))
+    return replace(problem, dead=(*problem.dead, push))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

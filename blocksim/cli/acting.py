@@ -87,7 +87,7 @@ class Loading:
     )
     push: float | None = option(
         "Push sideways in g, over the weight of each block, to the side to which it "
-        "bears less.",
+        "bears less; in space towards --azimuth.",
         range=PUSH,
     )
     spread: float | None = option(
@@ -98,7 +98,7 @@ class Loading:
         "Tilt of the table in the plane, in degrees: its right side goes down.", range=TILT_DEG
     )
     azimuth: float | None = option(
-        "Beside --tilt, of blocks in space: towards where, in degrees from x "
+        "Beside --tilt or --push, of blocks in space: towards where, in degrees from x "
         "towards y; 0 if left out.",
         range=TILT_DEG,
     )

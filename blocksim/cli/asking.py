@@ -152,11 +152,11 @@ def bracket(
     allowed = "left out beside --vehicle" if crosses else "left out: it is sought"
     require(push is None or not (crosses or over == "push"), "--push", push, allowed)
     problem = anything_asked(
-        scene, given, loading, spatial=spatial, tilts=over == "tilt", thick=not sought,
-        sought=sought,
+        scene, given, loading, spatial=spatial, tilts=over == "tilt",
+        pushes=over == "push" or push is not None, thick=not sought, sought=sought,
     )  # fmt: skip
     if problem.in_space:
-        refuse({**asdict(crossed), "push": push})
+        refuse(asdict(crossed))
     elif crosses:
         usual = {"--over": over in {None, "load"}, "--within": within is None,
                  "--method": method in {"auto", "limit"}, "--set": settings is None,

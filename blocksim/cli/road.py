@@ -30,7 +30,7 @@ from blocksim.kinds.circular import LEAST_DENSITY, CircularArch
 from blocksim.limit.crushing import require_sizes
 
 IN_SPACE = {"parameters", "mu", "friction_angle", "unit_weight", "tolerance", "unit", "layer",
-            "load", "tilt", "azimuth", "gravity"}  # fmt: skip
+            "load", "push", "tilt", "azimuth", "gravity"}  # fmt: skip
 """Options that mean something in space."""
 
 

@@ -37,6 +37,7 @@ def anything_asked(
     *,
     spatial: bool = False,
     tilts: bool = False,
+    pushes: bool = False,
     thick: bool = False,
     sought: bool = False,
     **needed: object,
@@ -46,11 +47,11 @@ def anything_asked(
     `scene`: A file, a shipped name or a kind; None for the circular arch by its options.
     `given`, `thick`, `sought`, `needed`: As of `arch_asked`.
     `spatial`: Whether blocks of the plane are asked as prisms.
-    `tilts`: Whether the question tilts them.
+    `tilts`, `pushes`: Whether the question tilts or pushes them.
     """
     # Prisms tilt in space, towards any side; what is of the plane tilts in it.
     late = spatial and loading.azimuth is not None
-    acting = replace(loading, tilt=None) if late else loading
+    acting = replace(loading, tilt=None, push=None) if late else loading
     if scene is None:
         found = arch_asked(given, thick=thick, sought=sought, **needed)
         if acting.given or given.lean is not None:
@@ -64,17 +65,17 @@ def anything_asked(
         require_given(**needed)
         found = structure(scene, given, acting)
     in_space = found.in_space or spatial
-    turned = in_space and (tilts or loading.tilt is not None)
-    allowed = (
-        "left out, or --tilt beside it" if in_space else "left out: it is of blocks in space"
-    )
-    require(turned or loading.azimuth is None, "--azimuth", loading.azimuth, allowed)
+    given_way = pushes or tilts or loading.tilt is not None or loading.push is not None
+    beside = "left out, or --tilt or --push beside it"
+    allowed = beside if in_space else "left out: it is of blocks in space"
+    usable = in_space and given_way
+    require(usable or loading.azimuth is None, "--azimuth", loading.azimuth, allowed)
     if not spatial:
         return found
     from blocksim.blocks.road import require_upright
     from blocksim.blocks.space.extruded import extruded
 
-    if late or tilts:
+    if tilts or (late and loading.tilt is not None):
         # Prisms do not know what of their loads lies on a road.
         name, turn = (
             ("--over", "tilt") if tilts else ("--tilt", math.radians(loading.tilt or 0.0))
@@ -82,7 +83,13 @@ def anything_asked(
         require_upright(found, name, turn)
     made = found if found.in_space else extruded(found)
     made = replace(made, azimuth=math.radians(loading.azimuth or 0.0))
-    return made.tilted(math.radians(loading.tilt)) if late and loading.tilt else made
+    if late and loading.tilt:
+        made = made.tilted(math.radians(loading.tilt))
+    if late and loading.push is not None:
+        from blocksim.ask.push import pushed
+
+        made = pushed(made, loading.push)
+    return made
 
 
 def is_thick(given: Given) -> bool:

@@ -184,8 +184,8 @@ def described(problem: Problem[Any]) -> str:
     said.append(f"in space, mu {problem.mu:g}" if spatial else f"mu {problem.mu:g}")
     if tilt:
         said.append(f"tilted {tilt:g} deg")
-    if spatial and towards(problem):
-        said.append(f"towards {towards(problem):g} deg from x")
+        if spatial and towards(problem):
+            said.append(f"towards {towards(problem):g} deg from x")
     if lean:
         said.append(f"gravity leans {lean:g} deg out of the plane")
     pull = math.hypot(*problem.gravity.tolist())
