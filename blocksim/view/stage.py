@@ -14,8 +14,9 @@ from functools import cached_property
 import numpy as np
 
 from blocksim.ask.answer import SOUGHT
-from blocksim.blocks.assembly import Array
-from blocksim.blocks.joints import JointState
+from blocksim.blocks.assembly import Array, Assembly
+from blocksim.blocks.joints import JointState, classify
+from blocksim.blocks.outlines import distances
 from blocksim.blocks.space.extruded import lifted, prism, prisms
 from blocksim.engines.ground import ground_level, piers
 from blocksim.kinds.offers import carried_of
@@ -24,7 +25,7 @@ from blocksim.simulation.recording import Recording
 from blocksim.view.drawing import clipped, grain_of, rims
 from blocksim.view.solidscene import Solids
 from blocksim.view.thrustlines import is_chained, near_blocks, thrust_lines
-from blocksim.view.timeline import Moment, Placing, SeenJoints, Timeline
+from blocksim.view.timeline import SEEN, Moment, Timeline, upright
 
 TOUCHING = 0.02
 """Height of a corner over the ground below which its block lies on it [r]."""
@@ -40,6 +41,51 @@ WIDER = 1.12
 """Depth of the footings over that of the blocks."""
 DIGITS = 9
 """Decimals of a line of thrust [size]."""
+
+
+class Placing:
+    """Convex pieces of blocks of the plane, and joints, carried by poses.
+
+    It has:
+    `owner`, (pieces,): The block that each piece belongs to.
+    `outlines`, (pieces, sides, 2): Of the pieces, from the centres of their blocks; what has
+        fewer corners repeats its last one.
+    """
+
+    def __init__(self, assembly: Assembly) -> None:
+        self._assembly = assembly
+        pieces = [
+            (index, (part - block.centre) / assembly.size)
+            for index, block in enumerate(assembly.blocks)
+            for part in block.polygons
+        ]
+        self.owner = np.array([index for index, _ in pieces])
+        sides = max(len(each) for _, each in pieces)
+        self.outlines = np.array(
+            [np.pad(each, ((0, sides - len(each)), (0, 0)), "edge") for _, each in pieces]
+        )
+        self._half = assembly.depths[self.owner] / 2
+
+    def corners(self, poses: Array) -> Array:
+        """Return the corners in space at poses, (pieces, 2, sides, 3)."""
+        turns, centres = upright(poses)
+        half = np.broadcast_to(self._half[:, None, None], (*self.outlines.shape[:2], 1))
+        near = np.concatenate([self.outlines, half], axis=-1)
+        local = np.stack([near, near * [1, 1, -1]], axis=1)
+        owner = self.owner
+        return centres[owner][:, None, None] + local @ turns[owner][:, None].swapaxes(2, 3)
+
+    def faces(self, poses: Array) -> Array:
+        """Return the ends of joints in space, as the blocks on both sides carry them."""
+        assembly = self._assembly
+        turns, centres = upright(poses)
+        # The support comes last, as index -1 says: it stays.
+        centres = np.vstack([centres, np.zeros(3)])
+        turns = np.concatenate([turns, np.eye(3)[None]])
+        sides = assembly.sides.T
+        local = np.zeros((*sides.shape, 2, 3))
+        local[..., :2] = assembly.joint_arms.swapaxes(0, 1)
+        return centres[sides][:, :, None] + local @ turns[sides].swapaxes(2, 3)
 
 
 class Stage(Timeline):
@@ -177,9 +223,42 @@ class Stage(Timeline):
 
     def joints_at(self, poses: Array, time: float) -> tuple[JointState, ...]:
         """Tell what joints are seen to do at poses, (blocks, 3 or 6), and their time."""
-        return self._seen.at(poses, time)
+        # Joint states are those of motion in the plane.
+        if not self.recording.problem.is_planar:
+            return (JointState.CLOSED,) * len(self.assembly.joints)
+        states: list[JointState] = []
+        seen = classify(self.assembly, poses, least=SEEN)
+        for joint, parted, gone in zip(seen, *self._fates, strict=True):
+            state = JointState.OPEN if time >= parted else joint.state
+            states.append(JointState.CLOSED if time >= gone else state)
+        return tuple(states)
 
     @cached_property
-    def _seen(self) -> SeenJoints:
-        frames = self.shown if self.moves else []
-        return SeenJoints(self.recording, self._placing, frames, self.ground + TOUCHING)
+    def _fates(self) -> tuple[Array, Array]:
+        """Times from which each joint has parted, and is none any more, (joints,) each.
+
+        What has parted and meets again is no hinge, and a block that lies on the ground, or
+        has come loose of both its neighbours, is rubble: it has no joints.
+        """
+        before, after, *_ = self.assembly.joint_arrays
+        blocks = len(self.assembly.blocks)
+        parted = np.full(len(before), np.inf)
+        rubble = np.full(blocks + 1, np.inf)  # the last stands for the support
+        for frame in self.shown if self.moves else []:
+            time = float(self.recording.times[frame])
+            poses = self.recording.poses[frame]
+            seen = classify(self.assembly, poses, least=SEEN)
+            faces = self._placing.faces(lifted(poses))[..., :2]
+            # Turned far, blocks may have left each other though neither end seems open.
+            apart = np.array([joint.state is JointState.OPEN for joint in seen])
+            apart |= distances(faces, faces[:, ::-1, None]).min(axis=(1, 2)) > SEEN
+            parted = np.minimum(parted, np.where(apart, time, np.inf))
+            held = np.zeros(blocks + 1, dtype=bool)
+            for side in (before, after):
+                held[side[parted > time]] = True
+            bottoms = self._placing.corners(lifted(poses))[..., 1].min(axis=(1, 2))
+            lowest = np.full(blocks, np.inf)
+            np.minimum.at(lowest, self._placing.owner, bottoms)
+            loose = ~held[:blocks] | (lowest < self.ground + TOUCHING)
+            rubble[:blocks] = np.minimum(rubble[:blocks], np.where(loose, time, np.inf))
+        return parted, np.minimum(rubble[before], rubble[after])

@@ -7,16 +7,14 @@ sqrt(size/g).
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from blocksim.blocks.assembly import Array, Assembly
-from blocksim.blocks.joints import JointState, classify
-from blocksim.blocks.outlines import distances
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import JointState
 from blocksim.blocks.space.extruded import lifted
 from blocksim.simulation.motion import AT_REST, FRAME, UNMOVED, UNSEEN
 from blocksim.simulation.recording import Recording
@@ -176,102 +174,3 @@ class Timeline(ABC):
         """Return how much forces at rest still say at a time, from 1 falling to 0."""
         moved = float(np.interp(time, self.recording.times, self.displaced))
         return float(np.interp(moved, (STILL, GONE), (1.0, 0.0)))
-
-
-class Placing:
-    """Convex pieces of blocks of the plane, and joints, carried by poses.
-
-    It has:
-    `owner`, (pieces,): The block that each piece belongs to.
-    `outlines`, (pieces, sides, 2): Of the pieces, from the centres of their blocks; what has
-        fewer corners repeats its last one.
-    """
-
-    def __init__(self, assembly: Assembly) -> None:
-        self._assembly = assembly
-        pieces = [
-            (index, (part - block.centre) / assembly.size)
-            for index, block in enumerate(assembly.blocks)
-            for part in block.polygons
-        ]
-        self.owner = np.array([index for index, _ in pieces])
-        sides = max(len(each) for _, each in pieces)
-        self.outlines = np.array(
-            [np.pad(each, ((0, sides - len(each)), (0, 0)), "edge") for _, each in pieces]
-        )
-        self._half = assembly.depths[self.owner] / 2
-
-    def corners(self, poses: Array) -> Array:
-        """Return the corners in space at poses, (pieces, 2, sides, 3)."""
-        turns, centres = upright(poses)
-        half = np.broadcast_to(self._half[:, None, None], (*self.outlines.shape[:2], 1))
-        near = np.concatenate([self.outlines, half], axis=-1)
-        local = np.stack([near, near * [1, 1, -1]], axis=1)
-        owner = self.owner
-        return centres[owner][:, None, None] + local @ turns[owner][:, None].swapaxes(2, 3)
-
-    def faces(self, poses: Array) -> Array:
-        """Return the ends of joints in space, as the blocks on both sides carry them."""
-        assembly = self._assembly
-        turns, centres = upright(poses)
-        # The support comes last, as index -1 says: it stays.
-        centres = np.vstack([centres, np.zeros(3)])
-        turns = np.concatenate([turns, np.eye(3)[None]])
-        sides = assembly.sides.T
-        local = np.zeros((*sides.shape, 2, 3))
-        local[..., :2] = assembly.joint_arms.swapaxes(0, 1)
-        return centres[sides][:, :, None] + local @ turns[sides].swapaxes(2, 3)
-
-
-class SeenJoints:
-    """States of joints, as frames show them. Corners below `low` lie on the ground."""
-
-    def __init__(
-        self, recording: Recording, placing: Placing, frames: Sequence[int], low: float
-    ) -> None:
-        self._recording, self._assembly = recording, recording.assembly
-        self._placing, self._frames, self._low = placing, frames, low
-
-    def at(self, poses: Array, time: float) -> tuple[JointState, ...]:
-        """Tell the states at poses, (blocks, 3 or 6), and their time."""
-        # Joint states are those of motion in the plane.
-        if not self._recording.problem.is_planar:
-            return (JointState.CLOSED,) * len(self._assembly.joints)
-        parted, gone = self._fates
-        states: list[JointState] = []
-        for joint in classify(self._assembly, poses, least=SEEN):
-            place = len(states)
-            open_by_now = time >= parted[place]
-            state = JointState.OPEN if open_by_now else joint.state
-            states.append(JointState.CLOSED if time >= gone[place] else state)
-        return tuple(states)
-
-    @cached_property
-    def _fates(self) -> tuple[Array, Array]:
-        """Times from which each joint has parted, and is none any more, (joints,) each.
-
-        What has parted and meets again is no hinge, and a block that lies on the ground, or
-        has come loose of both its neighbours, is rubble: it has no joints.
-        """
-        before, after, *_ = self._assembly.joint_arrays
-        blocks = len(self._assembly.blocks)
-        parted = np.full(len(before), np.inf)
-        rubble = np.full(blocks + 1, np.inf)  # the last stands for the support
-        for frame in self._frames:
-            time = float(self._recording.times[frame])
-            poses = self._recording.poses[frame]
-            seen = classify(self._assembly, poses, least=SEEN)
-            faces = self._placing.faces(lifted(poses))[..., :2]
-            # Turned far, blocks may have left each other though neither end seems open.
-            apart = np.array([joint.state is JointState.OPEN for joint in seen])
-            apart |= distances(faces, faces[:, ::-1, None]).min(axis=(1, 2)) > SEEN
-            parted = np.minimum(parted, np.where(apart, time, np.inf))
-            held = np.zeros(blocks + 1, dtype=bool)
-            for side in (before, after):
-                held[side[parted > time]] = True
-            bottoms = self._placing.corners(lifted(poses))[..., 1].min(axis=(1, 2))
-            lowest = np.full(blocks, np.inf)
-            np.minimum.at(lowest, self._placing.owner, bottoms)
-            loose = ~held[:blocks] | (lowest < self._low)
-            rubble[:blocks] = np.minimum(rubble[:blocks], np.where(loose, time, np.inf))
-        return parted, np.minimum(rubble[before], rubble[after])
