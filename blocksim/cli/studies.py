@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
@@ -15,11 +16,10 @@ from blocksim.common.files import make_folder
 from blocksim.common.words import counted
 from blocksim.engines import NAMES, engine_named
 from blocksim.report.answerwords import ratio, signed
-from blocksim.report.structurepart import found_of, question_of, summary_of_structures
-from blocksim.studies.agreement import Validation, disagreements, numbered
+from blocksim.report.structurepart import found_of, summary_of_structures
+from blocksim.studies.agreement import Validation, disagreements
 from blocksim.studies.chart import Point, cases, measure, on_front
-from blocksim.studies.questions import StructureRow
-from blocksim.studies.validate import parted, structures, unasked
+from blocksim.studies.validate import LIMIT, Row, parted, structures, unasked
 from blocksim.studies.validate import validate as run_validation
 
 
@@ -49,11 +49,8 @@ def validate(
     with progress() as report:
         found = run_validation(chosen, engines, workers=workers, progress=report)
     paths = write_results(found, out, left_out)
-    arches, others = parted(found)
-    show(validation_table(arches))
-    say(*validation_lines(arches))
-    show(structure_table(others))
-    say(*structure_lines(others), *(f"not asked of {each.words}" for each in left_out))
+    show(answer_table(found))
+    say(*answer_lines(found), *(f"not asked of {each.words}" for each in left_out))
     say("wrote " + ", ".join(str(path) for path in paths))
     raise click.exceptions.Exit(int(any(row.miss for row in found)))
 
@@ -75,75 +72,60 @@ def chart(
     say("wrote " + ", ".join(str(path) for path in paths))
 
 
-def validation_table(rows: list[Validation]) -> Table:
-    """Lay out validation rows for a terminal: a line an arch, a column an engine."""
-    engines = list(dict.fromkeys(row.engine for row in rows))
-    headings = ("#", "scenario", "alpha", "mu", "n", "mode", "published", "limit", *engines)
-    words = {"scenario", "mode", *engines}
-    table = Table(*headings, right={*headings} - words, wrap=False, below=len(engines))
-    for name, number in numbered(rows).items():
-        answers = {row.engine: row for row in rows if row.scenario == name}
-        row = next(iter(answers.values()))
-        table.add_row(
-            str(number),
-            name,
-            f"{math.degrees(row.half_angle):.1f}",
-            f"{row.mu:.4g}",
-            str(row.voussoirs),
-            "/".join(row.modes_published),
-            ratio(row.eta_published),
-            ratio(row.eta_limit),
-            *(_answer(answers.get(engine)) for engine in engines),
-        )
-    return table
-
-
-def validation_lines(rows: list[Validation]) -> list[str]:
-    """Return how many rows agree, what does not, and where engines differ, in words."""
-    misses = [row for row in rows if row.miss]
-    right = f"{len(rows) - len(misses)} of {len(rows)}"
-    lines = [
-        "mode, published: of the continuous arch, the thickness as a share of the radius",
-        "limit: least thickness of the voussoirs as built",
-        "engines: the mode that is seen, and how far their least thickness is from limit's",
-        f"{right} answers of engines agree with limit: thickness, mode and verdict",
-    ]
-    lines += [f"  {row.scenario}, {row.engine}: {row.miss} ({row.note})" for row in misses]
-    if len({row.engine for row in rows}) > 1:
-        apart = disagreements(rows)
-        places = counted(len(apart), "place") if apart else "no place"
-        lines.append(f"engines contradict each other in {places}")
-        lines += [f"  {each}" for each in apart]
-    return lines
-
-
-def structure_table(rows: list[StructureRow]) -> Table:
-    """Lay out rows on structures for a terminal: a line a question, a column a method."""
-    methods = list(dict.fromkeys(row.method for row in rows))
+def answer_table(rows: Sequence[Row]) -> Table:
+    """Lay out answers for a terminal: a line a question, a column a method."""
+    told = [_told(row) for row in rows]
+    # The exact answers come first.
+    methods = sorted(dict.fromkeys(method for _, method, _ in told), key=LIMIT.__ne__)
     headings = ("structure", "over", "known", "published", *methods)
     table = Table(*headings, right={"known", "published"}, wrap=False, below=len(methods))
     asked: dict[tuple[str, ...], dict[str, str]] = {}
-    for row in rows:
-        wanted = "" if row.expected is None else f"{row.expected:.8g}"
-        known = row.expected_verdict.value if row.expected_verdict else wanted
-        question = (row.structure, row.question, known, row.published or "-")
-        answer = f"{found_of(row)}{' !' if row.miss else ''}"
-        asked.setdefault(question, {})[row.method] = answer
+    for question, method, answer in told:
+        asked.setdefault(question, {})[method] = answer
     for question, answers in asked.items():
         table.add_row(*question, *(answers.get(method, "") for method in methods))
     return table
 
 
-def structure_lines(rows: list[StructureRow]) -> list[str]:
-    """Return how many answers on structures agree, and what does not, in words."""
-    return [
-        summary_of_structures(rows).removesuffix("."),
-        *(
-            f"  {row.structure}, {question_of(row)}, {row.method}: {row.miss} ({row.note})"
-            for row in rows
-            if row.miss
-        ),
+def _told(row: Row) -> tuple[tuple[str, ...], str, str]:
+    """Return a question with what is known of it, the method asked, and its answer."""
+    wrong = " !" if row.miss else ""
+    if isinstance(row, Validation):
+        known = f"{row.mode_limit or ''} {ratio(row.eta_limit)}".strip()
+        published = f"{'/'.join(row.modes_published)} {ratio(row.eta_published)}"
+        error = "" if row.error is None else f" {signed(100 * row.error, 3)}%"
+        answer = f"{row.mode_observed or '-'}{error}{wrong}"
+        return (row.scenario, "thickness", known, published), row.engine, answer
+    wanted = "" if row.expected is None else f"{row.expected:.8g}"
+    known = row.expected_verdict.value if row.expected_verdict else wanted
+    question = (row.structure, row.question, known, row.published or "-")
+    return question, row.method, f"{found_of(row)}{wrong}"
+
+
+def answer_lines(rows: Sequence[Row]) -> list[str]:
+    """Return how many answers agree, what does not, and where engines differ, in words."""
+    arches, built = parted(rows)
+    right = sum(not row.miss for row in arches)
+    lines = [
+        "thickness of arches: modes, and the least thickness as a share of the radius",
+        "  known: of the voussoirs as built, by limit; published: of the continuous arch",
+        "  engines: the mode that is seen, and how far their least thickness is from known",
+        f"{right} of {len(arches)} answers of engines agree with limit: thickness, mode "
+        "and verdict",
+        summary_of_structures(built).removesuffix("."),
     ]
+    lines += [
+        f"  {name}, {over}, {method}: {row.miss} ({row.note})"
+        for row in rows
+        if row.miss
+        for (name, over, *_), method, _ in [_told(row)]
+    ]
+    if len({row.engine for row in arches}) > 1:
+        apart = disagreements(arches)
+        places = counted(len(apart), "place") if apart else "no place"
+        lines.append(f"engines contradict each other in {places}")
+        lines += [f"  {each}" for each in apart]
+    return lines
 
 
 def chart_table(points: list[Point]) -> Table:
@@ -164,11 +146,3 @@ def chart_table(points: list[Point]) -> Table:
             "on the front" if point in best else "",
         )
     return table
-
-
-def _answer(row: Validation | None) -> str:
-    """Return what one engine saw, and the error of its bracket."""
-    if row is None:
-        return "-"
-    error = "" if row.error is None else f" {signed(100 * row.error, 3)}%"
-    return f"{row.mode_observed or '-'}{error}{' !' if row.miss else ''}"
