@@ -16,15 +16,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.random import Generator
 
-from blocksim import (
-    Arch,
-    CircularArch,
-    InputError,
-    Load,
-    Problem,
-    equilibrium,
-    structure_of,
-)
+from blocksim import Arch, CircularArch, InputError, Load, Problem, equilibrium, structure_of
 from blocksim.arch.limit import least_thickness
 from blocksim.ask import family_of
 from tests.assemblies import KINDS as ASSEMBLIES

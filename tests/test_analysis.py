@@ -9,7 +9,6 @@ import json
 import math
 import re
 from collections import Counter
-from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -221,18 +220,6 @@ def test_arches_of_the_map_are_drawn_the_same_again_and_near_critical() -> None:
 
 
 @pytest.mark.long
-def test_few_bodies_answer_as_all_blocks_do(tmp_path: Path) -> None:
-    rows = study("merging").main(tmp_path, quick=True)
-    assert [row["side"] for row in rows] == ["inside", "outside"] * 2
-    for row in rows:
-        right = "stands" if row["side"] == "inside" else "collapses"
-        assert row["whole"] == row["merged"] == right
-        assert row["bodies"] <= row["all_blocks"]
-    assert any(row["bodies"] < row["all_blocks"] for row in rows)
-    assert len(csv_rows(tmp_path / "merging_pymunk.csv")) == 4
-
-
-@pytest.mark.long
 def test_costs_are_measured_and_answers_right(tmp_path: Path) -> None:
     costs = study("costs").main(tmp_path, quick=True)
     assert [cost.method for cost in costs] == ["theory"] * 2 + ["limit"] * 2 + ["direct"] * 3
@@ -256,33 +243,6 @@ def test_structures_with_known_answers_are_answered_right(tmp_path: Path) -> Non
     rows = csv_rows(tmp_path / "structure_cases.csv")
     assert [row["case"] for row in rows] == [line.case for line in result.lines]
     assert "0 false, 0 undecided" in study_of.table(result)
-
-
-@pytest.mark.long
-def test_other_engines_are_asked_about_structures_with_known_answers(tmp_path: Path) -> None:
-    study_of = study("structure_cases")
-    result = study_of.main(tmp_path, quick=True, engine="pymunk")
-    assert (result.asked, result.false, result.undecided, result.refused) == (19, 0, 0, 0)
-    assert "pymunk asked 19 times" in study_of.table(result)
-    # A wrong value would be seen, on either side.
-    question = next(study_of.questions("trilithon"))
-    line = study_of.answered(
-        "trilithon", replace(question, expected=0.26), moving=False, engine="pymunk"
-    )
-    assert line.false == 1
-
-
-@pytest.mark.long
-def test_rubble_is_solid_and_gains_no_energy(tmp_path: Path) -> None:
-    """One arch and one wall; `test_rubble` has every engine."""
-    module = study("rubble")
-    rows = module.main(tmp_path, quick=True, engine="direct")
-    assert len(rows) == 2
-    for row in rows:
-        assert row["overlap"] < module.ALLOWED
-        assert max(row["gain"], row["own_gain"]) < module.GAIN
-        assert row["thrown"] == 0.0
-    assert [row["kind"] for row in csv_rows(tmp_path / "rubble_direct.csv")] == ["arch", "wall"]
 
 
 def test_overlap_of_rubble_would_be_seen() -> None:

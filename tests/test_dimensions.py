@@ -162,10 +162,6 @@ def test_structures_take_an_angle_of_friction_and_a_unit_weight(tmp_path: Path) 
     path.write_text(json.dumps({"friction": 0.5, "blocks": [floor, block]}))
     bed = told(str(path), "--unit-weight", "20")["joints"][0]  # type: ignore[index]
     assert bed["normal_force"] == pytest.approx(20_000 * 2 * 0.5, rel=1e-9)
-    path.write_text(json.dumps({"friction": 0.5, "blocks": [floor, {**block, "weight": 5}]}))
-    done = inside("check", str(path), "--unit-weight", "20")
-    assert done.returncode == 2
-    assert "blocks[1].weight = 5: must be left out where a unit weight is given" in done.stderr
 
 
 @pytest.mark.parametrize("more", [(), ("--tilt", "0")])

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from running import inside as blocksim
 
-from blocksim import InputError
 from blocksim.arch.theory.map import at_points
 from blocksim.view.explorer import explorer_page, read_results
 from blocksim.view.mapshapes import LARGEST_MU, map_shapes
@@ -96,24 +95,6 @@ def test_results_as_validate_writes_them(tmp_path: Path) -> None:
     assert [row["nothing_stands"] for row in rows] == [False, False, True]
     data = embedded(explorer_page(rows, "validate.json"))
     assert len(data["results"]) == 3
-
-
-@pytest.mark.parametrize(
-    "row",
-    [
-        {"eta_low": "thin"},
-        {"eta_low": 3.0, "eta_high": 3.0},
-        {"half_angle_deg": 190.0},
-        {"mu": -1.0},
-        {"mu": "nan"},
-        {"weight": "heavy"},
-        {"voussoirs": 2},
-        {"mode_observed": "sss"},
-    ],
-)
-def test_results_that_are_none_are_refused(row: dict, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="--results"):
-        read_results(written(tmp_path, row))
 
 
 def test_names_from_elsewhere_are_text_never_markup(tmp_path: Path) -> None:

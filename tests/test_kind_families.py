@@ -17,13 +17,7 @@ from scipy.integrate import quad
 from scipy.optimize import linprog
 from structure_cases import case
 
-from blocksim import (
-    Problem,
-    Verdict,
-    bracket,
-    check,
-    structure_of,
-)
+from blocksim import Problem, Verdict, bracket, check, structure_of
 
 
 def exact(problem: Problem, over: str) -> float | None:
@@ -98,17 +92,6 @@ def test_an_island_is_told() -> None:
         ("circular", "normal"),
         ("pointed", "vertical"),
         ("basket-handle", "vertical"),
-        *(
-            pytest.param(name, joints, marks=pytest.mark.long)
-            for name, joints in (
-                ("pointed", "normal"),
-                ("elliptic", "normal"),
-                ("elliptic", "vertical"),
-                ("parabolic", "normal"),
-                ("parabolic", "vertical"),
-                ("basket-handle", "normal"),
-            )
-        ),
     ],
 )
 def test_direct_finds_it_again(name: str, joints: str) -> None:

@@ -90,35 +90,12 @@ def run(*words: str, cwd: Path | None = None, **where: str | None) -> tuple[int,
     "words",
     [pytest.param(QUESTION, marks=LONG), ("render", "semicircle", "--out", "x.svg")],
 )
-@pytest.mark.parametrize(
-    "where",
-    [
-        pytest.param(
-            {"HOME": None, "XDG_CACHE_HOME": None, "XDG_CONFIG_HOME": None, "USER": None},
-            marks=LONG,
-        ),
-        pytest.param(
-            {"HOME": "/proc/nobody", "XDG_CACHE_HOME": None, "XDG_CONFIG_HOME": None},
-            marks=LONG,
-        ),
-        {
-            "TMPDIR": "/nowhere",
-            "HOME": "/proc/nobody",
-            "XDG_CACHE_HOME": None,
-            "XDG_CONFIG_HOME": None,
-            "USER": None,
-            "LC_ALL": "C",
-            "LANG": "C",
-            "PYTHONUTF8": "0",
-            "PYTHONCOERCECLOCALE": "0",
-        },
-    ],
-    ids=["no home", "home not writable", "nothing writable, C locale"],
-)
-def test_surroundings_that_lack_something(
-    words: tuple[str, ...], where: dict[str, str | None], tmp_path: Path
-) -> None:
-    code, out, error = run(*words, cwd=tmp_path, **where)
+def test_surroundings_that_lack_something(words: tuple[str, ...], tmp_path: Path) -> None:
+    """No home, nothing that is writable, the C locale."""
+    gone = dict.fromkeys(("XDG_CACHE_HOME", "XDG_CONFIG_HOME", "USER"))
+    where = {"TMPDIR": "/nowhere", "HOME": "/proc/nobody", "LC_ALL": "C", "LANG": "C"}
+    plain = {"PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    code, out, error = run(*words, cwd=tmp_path, **gone, **where, **plain)
     assert (code, error) == (0, "")
     assert out.startswith("STANDS" if words == QUESTION else "wrote x.svg")
 
@@ -145,8 +122,6 @@ def test_a_terminal_of_twenty_columns_in_the_c_locale(words: tuple[str, ...]) ->
                 (FALLS, ">/dev/full"),
                 (QUESTION, "2>&-"),
                 (QUESTION, "<&-"),
-                (("doctor",), ">&- 2>&-"),
-                (("doctor",), ">/dev/full"),
                 (("--help",), ">/dev/full"),
             )
         ),

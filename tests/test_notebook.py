@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-import matplotlib
 import pytest
 from running import answered
 
@@ -174,29 +173,6 @@ def test_drawings_of_arches_tell_their_mode(formatted: Formatted) -> None:
     assert none.arch.eta_high is None
     engine = blocksim.check(CircularArch.of(ARCH, friction=0.7), method="direct")
     assert "stands, by direct, geometrical factor" in engine._repr_svg_()
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        *("arch", "check", "arch bracket", "recording"),
-        *(
-            pytest.param(each, marks=pytest.mark.long)
-            for each in ("problem", "arch check", "bracket")
-        ),
-    ],
-)
-def test_plot_gives_a_figure_that_can_be_saved(
-    shown: dict[str, Any], name: str, tmp_path: Path
-) -> None:
-    figure = shown[name].plot()
-    assert isinstance(figure, matplotlib.figure.Figure)
-    path = tmp_path / "a.png"
-    figure.savefig(path, dpi=50)
-    picture = matplotlib.image.imread(path)
-    # Something is drawn, in more than one colour.
-    assert picture[..., :3].std() > 0.02
-    assert figure.get_size_inches()[0] < 11
 
 
 def test_to_dict_is_what_the_command_line_prints(shown: dict[str, Any], tmp_path: Path) -> None:

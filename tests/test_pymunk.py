@@ -22,17 +22,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Simulation, get_engine, least_motion, observe, observed_mode, onset
 
-from blocksim import (
-    Arch,
-    CircularArch,
-    Load,
-    Mode,
-    Verdict,
-    Wall,
-    bracket,
-    check,
-    simulate,
-)
+from blocksim import Arch, CircularArch, Load, Mode, Verdict, Wall, bracket, check, simulate
 
 ARCHES = OF_ENGINES["pymunk"]
 SMALL = Arch(half_angle=math.pi / 2, eta=0.11, voussoirs=13)

@@ -10,14 +10,7 @@ import pytest
 from analysis import random_truth
 from blocksim import Problem, Verdict, check, collapse, equilibrium, structure_of
 from tests import random_problems
-from tests.certificates import (
-    balance,
-    certificate,
-    cone_edges,
-    loads_on,
-    needed,
-    unbalanced,
-)
+from tests.certificates import balance, certificate, cone_edges, loads_on, needed, unbalanced
 from tests.images import mirrored, renumbered
 from tests.random_problems import GROUPS, Case, Question, drawn
 

@@ -16,13 +16,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from worlds import Simulation, hold, observe, observed_mode, onset
 
-from blocksim import (
-    Arch,
-    CircularArch,
-    Verdict,
-    bracket,
-    check,
-)
+from blocksim import Arch, CircularArch, Verdict, bracket, check
 from blocksim.arch.reduction import MIRROR, Reduction
 
 CASES = [

@@ -15,14 +15,7 @@ from running import answered, inside
 from scipy.integrate import quad
 from structure_cases import case, scenes
 
-from blocksim import (
-    Arch,
-    CircularArch,
-    Problem,
-    collapse,
-    load_recording,
-    structure_of,
-)
+from blocksim import Arch, CircularArch, Problem, collapse, load_recording, structure_of
 from blocksim.blocks.road import on_road, with_road
 
 HEAVY, FILL = 22_000.0, 18_000.0

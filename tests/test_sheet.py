@@ -16,14 +16,7 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from blocksim import (
-    Arch,
-    CircularArch,
-    Problem,
-    check,
-    load_structure,
-    structure_of,
-)
+from blocksim import Arch, CircularArch, Problem, check, load_structure, structure_of
 from blocksim.view.drawing import save_figure
 from blocksim.view.sheet import Sheet, answer_sheet
 from blocksim.view.sheetdxf import LAYERS, write_dxf

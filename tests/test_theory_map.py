@@ -26,12 +26,7 @@ from blocksim.arch.theory import (
 )
 from blocksim.arch.theory.arrays import BIT
 from blocksim.arch.theory.equations import inner_friction, shoulder_friction
-from blocksim.arch.theory.map import (
-    at_points,
-    divide_friction,
-    iso_half_angle,
-    special_angles,
-)
+from blocksim.arch.theory.map import at_points, divide_friction, iso_half_angle, special_angles
 from blocksim.arch.theory.regions import (
     at_inner_sliding,
     crown_hinge,

@@ -19,15 +19,7 @@ from hypothesis import strategies as st
 from rocking import on_shaking_ground
 from running import answered, inside
 
-from blocksim import (
-    Problem,
-    Recording,
-    Verdict,
-    check,
-    load_recording,
-    simulate,
-    structure_of,
-)
+from blocksim import Problem, Recording, Verdict, check, load_recording, simulate, structure_of
 
 G = 9.81
 BOTH = pytest.mark.parametrize("method", ["direct", "pymunk"])

@@ -180,26 +180,6 @@ def test_the_motion_is_recorded_and_drawn() -> None:
     assert any("friction may let it move as well" in fact for fact in sheet.facts)
 
 
-@pytest.mark.long
-def test_a_film_shows_the_motion_that_friction_lets_begin(tmp_path: Path) -> None:
-    """An arch that can rest falls to the ground along it; of one that must none is made."""
-    arch = ("render", "--alpha", "155", "--mu", "3", "--voussoirs", "7", "--must-rest")
-    out = tmp_path / "fall.gif"
-    assert (
-        blocksim(*arch, "--ratio", "1.2", "--height", "360", "--out", str(out)).returncode == 0
-    )
-    found = check(
-        CircularArch.of(Arch(half_angle=HALF_ANGLE, eta=1.46972, voussoirs=7), 3.0),
-        must_rest=True,
-        method="limit",
-    )
-    poses = let_go(found.problem, found.motion.accelerations).poses
-    assert (poses[-1, :, 1] < poses[0, :, 1] - 0.3).sum() >= 4
-    refused = blocksim(*arch, "--ratio", "1.6", "--out", str(out))
-    assert refused.returncode == 2
-    assert "it must rest" in refused.stderr
-
-
 @pytest.mark.parametrize("mu", [0.2, 0.6])
 def test_a_block_in_a_wedge_must_rest(mu: float) -> None:
     assert may_start(between_walls(0.3, mu)).moves is False

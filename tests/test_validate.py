@@ -116,29 +116,6 @@ def test_infinite_friction_may_be_a_text_in_files(tmp_path: Path) -> None:
     assert load_design(str(path)).axes["mu"].values == (math.inf, 1.0)
 
 
-@pytest.mark.parametrize(
-    ("asked", "meant"),
-    [
-        (("check", "semicirle"), "semicircle"),
-        (("check", "oppenheim_8", "--load", "0.3"), "oppenheim_7"),
-        (("check", "Colum", "--mu", "0.6"), "column"),
-        (("check", "FILE"), "portal"),
-        (("kinds", "portl"), "portal"),
-    ],
-)
-def test_a_name_that_was_nearly_right_is_asked_for(
-    asked: tuple[str, ...], meant: str, tmp_path: Path
-) -> None:
-    file = tmp_path / "portal.json"
-    file.write_text('{"kind": "portl", "friction": 0.6}')
-    done = blocksim(*(str(file) if word == "FILE" else word for word in asked))
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1
-    assert done.stderr.endswith(f"; did you mean {meant}?\n")
-    far = blocksim("check", "zzz")
-    assert "did you mean" not in far.stderr
-
-
 def test_a_ratio_is_of_the_least_as_built_and_depth_is_told() -> None:
     asked = ("check", "semicircle", "--depth", "2.5", "--json")
     answer = json.loads(blocksim(*asked, "--ratio", "0.999").stdout)

@@ -13,7 +13,7 @@ from arches import least as known
 from matplotlib.figure import Figure
 from worlds import Simulation
 
-from blocksim import Arch, CircularArch, InputError, Verdict
+from blocksim import Arch, CircularArch, Verdict
 from blocksim.ask.methods import METHODS
 from blocksim.cli.studies import chart_table
 from blocksim.common.files import json_text
@@ -166,22 +166,3 @@ def test_points_of_another_program_are_drawn_beside(tmp_path: Path) -> None:
     assert read_points(path) == foreign
     write_chart([*POINTS, *read_points(path)], tmp_path)
     assert "elsewhere" in (tmp_path / "chart.json").read_text()
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "",
-        "[]",
-        '{"points": [{"case": "an arch"}]}',
-        '{"points": 1}',
-        '{"points": [{"knob": "luck"}]}',
-    ],
-)
-def test_what_holds_no_points_is_refused(text: str, tmp_path: Path) -> None:
-    path = tmp_path / "points.json"
-    path.write_text(text)
-    with pytest.raises(InputError, match="written by blocksim chart"):
-        read_points(path)
-    with pytest.raises(InputError, match="file"):
-        read_points(tmp_path / "none.json")

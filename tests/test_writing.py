@@ -11,8 +11,6 @@ import io
 import math
 import os
 import stat
-import subprocess
-import sys
 import threading
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
@@ -326,15 +324,6 @@ def test_a_full_disk_has_an_exit_code_of_its_own(tmp_path: Path) -> None:
     assert done.returncode == 74
     assert done.stderr == "blocksim: --out = 'a.npz': the system says 'File too large'\n"
     assert not list(tmp_path.iterdir())
-
-
-def test_so_has_a_full_standard_output() -> None:
-    with Path("/dev/full").open("w") as full:
-        done = subprocess.run(
-            [sys.executable, "-m", "blocksim", "cite"], stdout=full, stderr=-1, check=False
-        )
-    assert done.returncode == 74
-    assert done.stderr.count(b"\n") == 1
 
 
 @pytest.mark.parametrize("error", [PermissionError(EACCES, "Permission denied"), MemoryError()])
