@@ -179,34 +179,7 @@ SHAKEN = {**GIVEN, "shake": _TREES["shake"]}
 SCENARIO, MEASURED = _TREES["SCENARIO"], _TREES["MEASURED"]
 DESIGN, DRAWN_DESIGN = _TREES["DESIGN"], _TREES["DRAWN_DESIGN"]
 POINTS, RESULTS, PEER = _TREES["POINTS"], _TREES["RESULTS"], _TREES["PEER"]
-SVG = (
-    b'<svg xmlns="http://www.w3.org/2000/svg" width="400mm" height="300mm" '
-    b'viewBox="0 0 4 3"><g id="supports" transform="translate(0, 0) rotate(0) scale(1)">'
-    b'<polygon points="0,2 4,2 4,3 0,3"/></g><g class="blocks"><rect id="r" x="1" y="1" '
-    b'width="1" height="1"/><path d="M 1 0 A .5 .5 0 0 1 2 0 L 2 1 H 1 Z"/>'
-    b'<use href="#r" x="1.5"/></g><text x="1" y="1">a</text></svg>'
-)
-SOLID = {
-    "friction": 0.6,
-    "density": 20000.0,
-    "blocks": [
-        {"id": "bed", "fixed": True, "vertices": _cuboid(-1, -1, 3)},
-        {"id": 1, "vertices": _cuboid(0, 0, 1), "weight": 100.0},
-        {"id": "b", "polyhedra": [_cuboid(0.2, 1, 1)]},
-    ],
-    "live": [
-        {"body": [1.0, 0.0, 0.0]},
-        {"block": "b", "force": [0, 0, -5.0], "point": [0.5, 0.5, 2]},
-    ],
-    "load": 0.1,
-}
-CASES = {
-    "case": [
-        {"name": "wind", "factors": {"permanent": 1.0, "variable": 1.5, "friction": 1.2},
-         "load": 1.0},
-        {"name": "slope", "tilt": 2.0},
-    ]
-}  # fmt: skip
+SOLID, CASES, SVG = _TREES["SOLID"], _TREES["CASES"], _TREES["SVG"].encode()
 CSV = b"time_s,acceleration_g\n0,0\n0.05,0.2\n0.1,-0.1\n0.2,0\n"
 
 

@@ -10,13 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from itertools import pairwise
 
 import numpy as np
 import pytest
 from worlds import get_engine, observe
 
-from blocksim import Assembly, Block, Joint, Problem, Verdict
+from blocksim import Assembly, Problem, Verdict, structure_of
 
 BELOW, ABOVE = 0.99, 1.01
 SLOPES = [5.0, 20.0, 40.0]
@@ -69,42 +68,29 @@ def holds_both_sides(verdict: Callable[[float], Verdict]) -> None:
     assert verdict(ABOVE) is Verdict.COLLAPSES
 
 
-def polygon(corners: list[np.ndarray] | np.ndarray, depth: float = 1.0) -> Block:
-    """A homogeneous block of unit density; corners counter-clockwise."""
-    here = np.array(corners)
-    there = np.roll(here, -1, axis=0)
-    cross = here[:, 0] * there[:, 1] - there[:, 0] * here[:, 1]
-    area = cross.sum() / 2
-    centre = ((here + there) * cross[:, None]).sum(axis=0) / (6 * area)
-    polar = (cross * (here**2 + here * there + there**2).sum(axis=1)).sum() / 12
-    return Block(
-        vertices=here,
-        centre=centre,
-        mass=area * depth,
-        inertia=(polar - area * (centre @ centre)) * depth,
-        depth=depth,
-    )
+def built(
+    *polygons: np.ndarray | list[tuple[float, float]], fixed: int = 1, depth: float = 1.0
+) -> Assembly:
+    """Blocks of these corners, of which the first are fixed."""
+    blocks = [
+        {"id": at, "vertices": np.array(each).tolist(), "fixed": at < fixed, "depth": depth}
+        for at, each in enumerate(polygons)
+    ]
+    return structure_of({"friction": 1.0, "blocks": blocks}).assembly
 
 
 def stack(
     slope: float, width: float, height: float, count: int = 1, depth: float = 1.0
 ) -> Assembly:
     """Equal boxes on each other, on a plane that rises to the right."""
-    uphill = np.array([math.cos(slope), math.sin(slope)])
-    up = np.array([-uphill[1], uphill[0]])
-    levels = [up * height * level for level in range(count + 1)]
-    across = uphill * width
-    blocks = [
-        polygon([low, low + across, high + across, high], depth)
-        for low, high in pairwise(levels)
-    ]
-    joints = [
-        # Seen upwards, inner lies to the right.
-        Joint(before=level - 1, after=level, inner=levels[level] + across, outer=levels[level])
-        for level in range(count)
-    ]
-    assert joints[0].before < 0
-    return Assembly(blocks=tuple(blocks), joints=tuple(joints), size=1.0)
+    cos, sin = math.cos(slope), math.sin(slope)
+
+    def turned(left: float, low: float, right: float, high: float) -> np.ndarray:
+        corners = [(left, low), (right, low), (right, high), (left, high)]
+        return np.array(corners) @ np.array([[cos, sin], [-sin, cos]])
+
+    boxes = [turned(0, level * height, width, (level + 1) * height) for level in range(count)]
+    return built(turned(-9, -1, 9, 0), *boxes, depth=depth)
 
 
 @pytest.mark.parametrize("degrees", SLOPES)
@@ -142,32 +128,7 @@ def wedge(half_angle: float, width: float) -> Assembly:
     key = [(-face(low), low), (face(low), low), (top, high), (-top, high)]
     right = [(foot, 0.0), (out, 0.0), (out, high), (top, high)]
     left = [(-x, y) for x, y in right][::-1]
-    points = {
-        "left": Joint(
-            before=0,
-            after=1,
-            inner=np.array([-face(low), low]),
-            outer=np.array([-top, high]),
-        ),
-        "right": Joint(
-            before=1,
-            after=2,
-            inner=np.array([face(low), low]),
-            outer=np.array([top, high]),
-        ),
-        "left foot": Joint(
-            before=-1, after=0, inner=np.array([-foot, 0.0]), outer=np.array([-out, 0.0])
-        ),
-        "right foot": Joint(
-            before=2, after=-1, inner=np.array([foot, 0.0]), outer=np.array([out, 0.0])
-        ),
-    }
-    order = ("left foot", "left", "right", "right foot")
-    return Assembly(
-        blocks=tuple(polygon(np.array(each)) for each in (left, key, right)),
-        joints=tuple(points[name] for name in order),
-        size=1.0,
-    )
+    return built([(-9, -1), (9, -1), (9, 0), (-9, 0)], left, key, right)
 
 
 @pytest.mark.parametrize(("degrees", "width"), [(10.0, 1.0), (20.0, 1.0), (20.0, 3.0)])
@@ -181,7 +142,7 @@ def test_a_wedge_drives_two_blocks_apart(engine: str, degrees: float, width: flo
     w (1 - mu t) = mu (mu + t), or mu^2 + mu t (1 + w) - w = 0.
     """
     assembly = wedge(math.radians(degrees), width)
-    _, key, block = (each.mass for each in assembly.blocks)
+    block, key, _ = (each.mass for each in assembly.blocks)
     share_of_wedge = key / 2 / (key / 2 + block)
     both = math.tan(math.radians(degrees)) * (1 + share_of_wedge)
     critical = (math.sqrt(both**2 + 4 * share_of_wedge) - both) / 2
@@ -197,17 +158,13 @@ def flat_arch(half_angle: float, half_span: float, depth: float, count: int) -> 
     spread = np.linspace(-math.tan(half_angle), math.tan(half_angle), count + 1)
     inner = np.column_stack([centre * spread, np.zeros(count + 1)])
     outer = np.column_stack([(centre + depth) * spread, np.full(count + 1, depth)])
-    blocks = [polygon([inner[i], inner[i + 1], outer[i + 1], outer[i]]) for i in range(count)]
-    joints = [
-        Joint(
-            before=i - 1 if i > 0 else -1,
-            after=i if i < count else -1,
-            inner=inner[i],
-            outer=outer[i],
-        )
-        for i in range(count + 1)
+    beside = np.array([1.0, 0.0])
+    ends = [
+        [outer[0], outer[0] - beside, inner[0] - beside, inner[0]],
+        [inner[-1], inner[-1] + beside, outer[-1] + beside, outer[-1]],
     ]
-    return Assembly(blocks=tuple(blocks), joints=tuple(joints), size=half_span)
+    stones = [[inner[k], inner[k + 1], outer[k + 1], outer[k]] for k in range(count)]
+    return built(*map(np.array, [*ends, *stones]), fixed=2)
 
 
 @pytest.mark.parametrize(
