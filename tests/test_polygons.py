@@ -158,9 +158,12 @@ def test_mended_and_said(corners: list[tuple[float, float]], said: str):
 
 
 def test_a_centre_of_weight_leaves_the_inertia():
+    ground = {"id": 0, "vertices": GROUND, "fixed": True}
     plain, moved = (
-        assembly_of_polygons([GROUND, box(0, 0)], fixed=[0], centres=centres)
-        for centres in (None, [(0, 0), (0.3, 0.6)])
+        structure_of(
+            {"friction": 1.0, "blocks": [ground, {"id": 1, "vertices": box(0, 0), **more}]}
+        ).assembly
+        for more in ({}, {"centre": [0.3, 0.6]})
     )
     assert moved.blocks[0].centre.tolist() == [0.3, 0.6]
     assert moved.blocks[0].inertia == plain.blocks[0].inertia

@@ -11,14 +11,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
-
-import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.common.checks import COORDINATE, require
 from blocksim.common.errors import InputError
+from blocksim.common.series import gauss
 
 CUT_OFF = 30.0
 """Angle to the vertical beyond which Boussinesq's pressure is left out [deg]."""
@@ -90,12 +88,5 @@ class Dispersal:
 
 def quadrature(low: Any, high: Any) -> tuple[Array, Array]:
     """Return points between two ends, and their weights, by Gauss."""
-    nodes, weights = _gauss()
+    nodes, weights = gauss(NODES)
     return low + (high - low) * nodes, (high - low) * weights
-
-
-@cache
-def _gauss() -> tuple[Array, Array]:
-    """Points between 0 and 1, and their weights."""
-    nodes, weights = np.polynomial.legendre.leggauss(NODES)
-    return (1 + nodes) / 2, weights / 2

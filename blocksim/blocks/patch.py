@@ -117,26 +117,13 @@ class Profile:
         beside = x[[0, *steps, *(steps + 1), len(x) - 1]]
         return np.unique(np.concatenate([x - aside, x + aside, beside]))
 
-    def under(self, x: float, dispersal: Dispersal) -> tuple[NDArray[np.int64], Array, Array]:
-        """Find what bears a load on the road at a place, which fill spreads on its way down.
-
-        Each part of the load goes straight along its own ray, to what lies uppermost there, and
-        presses downwards on it. Parts that meet no body go to the ground: shares may sum to
-        less than 1.
-
-        `x`: On the road [m].
-        Returns `body`, (parts,).
-        Returns `share`, (parts,).
-        Returns `point`, (parts, 2): [m]
-        """
-        share, point = self.spread(np.array([x]), dispersal)
-        links = np.flatnonzero(share[0])
-        return self.owner[links], share[0, links], point[0, links]
-
     def spread(self, places: Array, dispersal: Dispersal) -> tuple[Array, Array]:
-        """Find what each link of the chain bears of loads on the road at places [m].
+        """Find what each link of the chain bears of loads on the road, which fill spreads.
 
-        `places`, (k,).
+        Each part of a load goes straight along its own ray, to what lies uppermost there, and
+        presses downwards on it.
+
+        `places`, (k,): On the road [m].
         Returns `share`, (k, links).
         Returns `point`, (k, links, 2): [m]; of no meaning where the share is 0.
         """

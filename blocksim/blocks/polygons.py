@@ -33,14 +33,7 @@ MOST_BLOCKS = 100_000
 _ROUNDING = 64 * np.finfo(float).eps
 
 
-def assembly_of_polygons(
-    polygons: Sequence[ArrayLike],
-    *,
-    fixed: Collection[int],
-    weights: Sequence[float] | None = None,
-    centres: Sequence[ArrayLike] | None = None,
-    density: float = 1.0,
-) -> Assembly:
+def assembly_of_polygons(polygons: Sequence[ArrayLike], *, fixed: Collection[int]) -> Assembly:
     """Build an assembly of polygons; its joints are where they touch.
 
     Parameters
@@ -49,12 +42,6 @@ def assembly_of_polygons(
         Corners of each body [m].
     fixed : collection of int
         Which of them stay where they are.
-    weights : sequence of float, optional
-        Of each body [N]; by default `density` times area times 1 m.
-    centres : sequence of (2,) array-like, optional
-        Where the weights act [m]; by default at the centroids.
-    density : float
-        Weight per volume [N/m^3].
 
     Raises
     ------
@@ -69,16 +56,10 @@ def assembly_of_polygons(
     (1, 1)
     """
     bodies = [
-        Body(
-            polygons=(corners,),
-            name=str(index),
-            fixed=index in fixed,
-            weight=None if weights is None else weights[index],
-            centre=None if centres is None else centres[index],
-        )
+        Body(polygons=(corners,), name=str(index), fixed=index in fixed)
         for index, corners in enumerate(polygons)
     ]
-    return assembly_of_bodies(bodies, density=density)[0]
+    return assembly_of_bodies(bodies)[0]
 
 
 def assembly_of_bodies(

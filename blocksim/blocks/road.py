@@ -56,17 +56,20 @@ def on_road(
 
 
 def _dispersed(profile: Profile, low: float, high: float, dispersal: Dispersal) -> list[Share]:
-    """Find what bears a load on the road that fill spreads, as `Profile.under`."""
-    if low == high:
-        return list(zip(*profile.under(low, dispersal), strict=True))
-    ends = profile.enters(dispersal)
-    edges = np.unique([low, high, *ends[(ends > low) & (ends < high)]])
-    return [
-        (body, share * weight / (high - low), point)
-        for start, end in itertools.pairwise(edges)
-        for x, weight in zip(*quadrature(start, end), strict=True)
-        for body, share, point in zip(*profile.under(float(x), dispersal), strict=True)
-    ]
+    """Find what bears a load on the road that fill spreads on its way down.
+
+    Parts that meet no body go to the ground: shares may sum to less than 1.
+    """
+    places, weights, wide = np.array([low]), np.ones(1), high - low or 1.0
+    if low < high:
+        ends = profile.enters(dispersal)
+        edges = np.unique([low, high, *ends[(ends > low) & (ends < high)]])
+        nodes = [quadrature(start, end) for start, end in itertools.pairwise(edges)]
+        places, weights = (np.concatenate(each) for each in zip(*nodes, strict=True))
+    shares, points = profile.spread(places, dispersal)
+    at, link = np.nonzero(shares)
+    borne = shares[at, link] * weights[at] / wide
+    return list(zip(profile.owner[link].tolist(), borne.tolist(), points[at, link], strict=True))
 
 
 def profile_of(assembly: Assembly) -> Profile:

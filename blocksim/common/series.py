@@ -1,4 +1,4 @@
-"""Entire functions of y = x^2 in which nothing cancels at small angles.
+"""Entire functions of y = x^2 in which nothing cancels at small angles; quadrature by Gauss.
 
 With
 
@@ -11,6 +11,7 @@ P and R are entire functions whose power series reach the last bit up to x = pi.
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import TypeVar
 
 import numpy as np
@@ -42,6 +43,13 @@ def sine_series(y: Value) -> Value:
 def lag_series(y: Value) -> Value:
     """(sin x - x cos x)/x^3."""
     return 0.5 - (2 + y) * _series(_R, y) - _series(_P, y)
+
+
+@cache
+def gauss(count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Nodes and weights of Gauss and Legendre on the interval from 0 to 1, (count,) each."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return (nodes + 1) / 2, weights / 2
 
 
 def _series(coefficients: list[float], y: Value) -> Value:

@@ -10,12 +10,12 @@ from __future__ import annotations
 from bisect import bisect
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
+from blocksim.common.series import gauss
 
 PANELS = 64
 """Parts of a curve in each of which its length is found by one quadrature."""
@@ -84,13 +84,6 @@ def where(rises: Callable[[Array], Array], levels: Array, low: float, high: floa
         below = rises(middle) < levels
         left, right = np.where(below, middle, left), np.where(below, right, middle)
     return (left + right) / 2
-
-
-@cache
-def gauss(count: int) -> tuple[Array, Array]:
-    """Nodes and weights of Gauss and Legendre on the interval from 0 to 1."""
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    return (nodes + 1) / 2, weights / 2
 
 
 def circle(shift: float, radius: float, start: float, end: float) -> Curve:

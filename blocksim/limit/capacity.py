@@ -105,10 +105,9 @@ class Capacity:
 
     def _collapse(self, found: Optimum) -> Collapse:
         cones = self.cones
-        if found.unbounded:
-            return Collapse(load_factor=math.inf, forces=None, mechanism=None)
         if not found.exists:
-            return Collapse(load_factor=None, forces=None, mechanism=None)
+            factor = math.inf if found.unbounded else None
+            return Collapse(load_factor=factor, forces=None, mechanism=None)
         return Collapse(
             load_factor=float(found.values[-1]),
             forces=cones.forces(found.values[:-1]),

@@ -28,7 +28,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.bodies import parting
 from blocksim.blocks.groups import groups_of
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import require
@@ -130,18 +131,11 @@ def rates_of(problem: Problem) -> Array:
     slip alike.
     """
     assembly, joints = problem.assembly, problem.assembly.joint_arrays
-    count = len(assembly.joints)
-    points = np.concatenate([joints.ends, joints.ends[:, :1]], axis=1)
-    ways = np.stack([joints.normal, joints.normal, joints.tangent], axis=1)
-    found = np.zeros((count, 3, len(assembly.blocks), PLANAR))
-    centres = assembly.centres / assembly.size
-    for sign, blocks in ((1.0, joints.after), (-1.0, joints.before)):
-        own = np.flatnonzero(blocks != SUPPORT)
-        arm = points[own] - centres[blocks[own], None]
-        turn = arm[..., 0] * ways[own, :, 1] - arm[..., 1] * ways[own, :, 0]
-        found[own, :, blocks[own], :2] += sign * ways[own]
-        found[own, :, blocks[own], 2] += sign * turn
-    return found.reshape(count, 3, -1)
+    each = np.eye(assembly.masses.size).reshape(-1, *assembly.masses.shape)
+    ways = np.stack([parting(assembly, rates)[0] for rates in each], axis=-1)
+    opening = np.einsum("jd,jedk->jek", joints.normal, ways)
+    slip = np.einsum("jd,jdk->jk", joints.tangent, ways[:, 0])
+    return np.concatenate([opening, slip[:, None]], axis=1)
 
 
 class _Law:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
+from blocksim.common.series import gauss
 
 TURN = math.radians(5)
 """By which a curve turns from chord to chord, at most."""
@@ -23,7 +24,6 @@ SAMPLED = 65
 """Places at which it is looked how far chords are off."""
 FAR = 1e100
 """Coordinates beyond which squares of lengths may be none that a float can hold."""
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 Corners = list[tuple[float, float]]
 Points = NDArray[np.complex128]
@@ -99,11 +99,11 @@ def bezier(points: list[complex]) -> Chords:
         return 3 * (back**2 * ways[0] + 2 * back * shares * ways[1] + shares**2 * ways[2])
 
     # Of degree five: four nodes are exact.
-    shares = (_NODES + 1) / 2
+    shares, weights = gauss(4)
     swept = ((at(shares) - start).conj() * speed(shares)).imag
     ways = [each for each in (first - start, second - first, end - second) if each]
     turn = sum(abs(cmath.phase(b / a)) for a, b in pairwise(ways))
-    return _chords(start, end, at, float(_WEIGHTS @ swept) / 4, turn)
+    return _chords(start, end, at, float(weights @ swept) / 2, turn)
 
 
 def ellipse(

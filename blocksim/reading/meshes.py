@@ -12,6 +12,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from blocksim.blocks.bodies import connected
 from blocksim.blocks.space.polyhedron import Polyhedron
 from blocksim.common.checks import COORDINATE, require
 from blocksim.common.errors import MISSING, InputError
@@ -149,9 +150,6 @@ def _bodies(facets: Facets) -> Iterator[Facets]:
     A body's facets follow each other, as programs write them: so bodies that touch at corners
     are told apart.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     open_edges: set[tuple[int, int]] = set()
     start = 0
     for at, (a, b, c) in enumerate(cast("list[list[int]]", facets.tolist())):
@@ -167,9 +165,7 @@ def _bodies(facets: Facets) -> Iterator[Facets]:
         used, place = np.unique(run, return_inverse=True)
         own = place.reshape(run.shape)
         pairs = np.concatenate([own[:, :2], own[:, 1:]])
-        shape = (len(used), len(used))
-        joined = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape)
-        label = connected_components(joined, directed=False)[1][own[:, 0]]
+        label = connected(len(used), *pairs.T)[own[:, 0]]
         yield from (run[label == each] for each in np.unique(label))
     if open_edges:
         yield facets[start:]

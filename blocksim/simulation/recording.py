@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Generic, Literal, cast
 import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Block, Blocks
+from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.record import from_record, to_record
 from blocksim.common.checks import infinite, is_number, require
@@ -195,8 +196,7 @@ class Recording(Shown, Generic[Blocks]):
 
 def _width(block: Block) -> float:
     """Return the root of a block's area [m]."""
-    x, y = block.vertices.T
-    return math.sqrt(abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1))) / 2)
+    return math.sqrt(signed_area(block.vertices))
 
 
 def _width_in_space(block: SolidBlock) -> float:
