@@ -30,8 +30,8 @@ MARKED = re.compile(r"<!-- table: ([\w ]+) -->\n.*?<!-- end -->", flags=re.DOTAL
 CANNOT = {
     "theory": "voussoirs, motion, anything but the circular arch",
     "limit": "motion, ground that shakes",
-    "direct": "gravity out of the plane",
-    "pymunk": "gravity out of the plane, supports that move",
+    "direct": "blocks that crush, soil that bears more",
+    "pymunk": "blocks in space, supports that move",
     "pybullet": "shaking, supports that move; creeps where joints slide",
     "mujoco": "shaking, supports that move; its contacts are soft",
 }

@@ -494,7 +494,7 @@ def test_a_push_is_borne_up_to_the_tangent_of_the_tilt(structure: str, azimuth: 
 
 
 @pytest.mark.parametrize("tilt", [0.0, -8.0])
-def test_a_lean_is_bracketed_in_space_unless_an_engine_is_asked_for(tilt: float) -> None:
+def test_a_lean_is_asked_in_space(tilt: float) -> None:
     """A column of 3 m, 0.4 m deep: tan(lean) = cos(tilt) 0.4 / 3, as it tilts in its plane."""
     given = {"depth": 0.4, "drums": 6, "drum_height": 0.5, "width": 1.0}
     column = blocksim.Column(**given, friction=0.9).problem().tilted(math.radians(tilt))
@@ -504,8 +504,10 @@ def test_a_lean_is_bracketed_in_space_unless_an_engine_is_asked_for(tilt: float)
     assert found.confirmed
     assert found.limit == pytest.approx(expected, rel=1e-6)
     assert blocksim.check(column.leaning(math.radians(expected + 0.01))).method == "limit"
-    asked = blocksim.ask.methods.choose("pybullet", problem=column.leaning(0.1))
-    assert asked.is_spatial
+    for aside, verdict in ((-1, Verdict.STANDS), (1, Verdict.COLLAPSES)):
+        leaning = column.leaning(math.radians(expected + aside))
+        for method in ("direct", "pybullet"):
+            assert blocksim.check(leaning, method=method).verdict is verdict
 
 
 def test_a_picture_shows_the_verdict_and_what_joints_do(tmp_path: Path) -> None:

@@ -14,8 +14,8 @@ class ArchAnswer:
 
     `shape`: The arch asked about.
     `eta_limit`, `eta_theory`: Least thickness over radius, of the voussoirs as built and of the
-        continuous arch, where gravity does not lean. It is 0 where any thickness stands (some
-        arches of three voussoirs), and None where no thickness up to 2 stands.
+        continuous arch. It is 0 where any thickness stands (some arches of three voussoirs),
+        and None where no thickness up to 2 stands.
     `mode`: How this arch starts to collapse. An engine takes it from the mechanism of the onset
         test, `limit` from eqs (15) and (16). `theory` knows the mode at the least thickness
         only, and gives that. None where the arch stands, or where its joints form none of the

@@ -131,7 +131,7 @@ class Check(Shown, Generic[Blocks]):
 
     @cached_property
     def static(self) -> Equilibrium | SpatialEquilibrium | None:
-        """What limit analysis says; None where gravity leans, or the ground shakes."""
+        """What limit analysis says; None where the ground shakes."""
         return equilibrium(self.problem) if self.problem.has_statics else None
 
     @cached_property
@@ -192,7 +192,7 @@ class Check(Shown, Generic[Blocks]):
 
     @cached_property
     def carried(self) -> Carried | None:
-        """What it carries; None where gravity leans, the ground shakes, or it is too large.
+        """What it carries; None in space, where the ground shakes, or it is too large.
 
         `blocksim.kinds.offers.carried_of` has no such bound.
         """

@@ -8,16 +8,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, Unpack, cast
 
 from blocksim.ask.ends import Change, Stands, Within
-from blocksim.ask.families import (
-    IN_SPACE,
-    Family,
-    Over,
-    families_of,
-    family_of,
-    over_lean_of_prisms,
-)
+from blocksim.ask.families import Family, Over, families_of, family_of
 from blocksim.ask.found import Found, by_family, by_threshold
-from blocksim.ask.methods import asked_as, chosen_words, leaves_to_limit
+from blocksim.ask.methods import chosen_words
 from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
 from blocksim.ask.searches import proofs_beside
 from blocksim.blocks.assembly import Blocks
@@ -183,13 +176,6 @@ def bracket(
         over = USUAL if USUAL in known else None
         if over is None:
             raise InputError("over", MISSING, f"one of {', '.join(known)}")
-    if leaves_to_limit(given.method):
-        if over == "lean" and not problem.in_space:
-            return _answer(
-                by_family(over_lean_of_prisms(problem), within, given), given, started
-            )
-        if over in IN_SPACE:
-            problem = asked_as(problem, given.method)
     if within is None and not problem.in_space:
         offered = offers_of(problem)
         threshold = None if offered is None else offered.threshold(over)

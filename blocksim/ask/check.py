@@ -70,7 +70,7 @@ def check(
     """
     started = time.perf_counter()
     given = taken(options, "tol", "confirm")
-    problem = asked_as(cast("Problem[Any]", problem_of(asked)), given.method)
+    problem = asked_as(cast("Problem[Any]", problem_of(asked)))
     chosen = choose(given.method, problem=problem, settings=given.settings, reduce=given.reduce)
     if must_rest:
         require_rest(problem)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, Literal
 
 import numpy as np
 
+from blocksim.ask.methods import asked_as
 from blocksim.ask.scan import TRIED, Scan, least_friction, standing_at
 from blocksim.blocks.assembly import Blocks
 from blocksim.blocks.maker import Kind
@@ -125,8 +126,9 @@ def family_of(problem: Problem[Any], over: str) -> Family[Any]:
     InputError
         If there is no such parameter, or nothing to multiply.
     """
-    if over in (IN_SPACE if problem.in_space else FAMILIES):
-        return FAMILIES[over](problem)
+    leans = not (problem.in_space or problem.is_planar)
+    if over in (FAMILIES if problem.is_planar else (*IN_SPACE, *["lean"] * leans)):
+        return FAMILIES[over](problem if over == "lean" else asked_as(problem))
     kind = problem.maker
     if kind is None or over not in kind.bracketed:
         raise InputError("--over", over, f"one of {', '.join(families_of(problem))}")
@@ -139,6 +141,8 @@ def families_of(problem: Problem[Any]) -> tuple[str, ...]:
     own = () if kind is None else kind.bracketed
     if problem.in_space:
         return (*IN_SPACE, *own)
+    if not problem.is_planar:
+        return (*IN_SPACE, "lean", *own)
     still = {"amplitude", "duration"} if problem.shaking is None else set[str]()
     return (*(name for name in FAMILIES if name not in still), *own)
 
@@ -177,25 +181,8 @@ def _over_tilt(problem: Problem[Any]) -> Family[Any]:
     )
 
 
-def _over_lean(problem: Problem) -> Family:
-    require_upright(problem, "--over", "lean")
-    return Family(
-        problem=problem,
-        name="lean",
-        unit="deg",
-        at=lambda value: problem.leaning(math.radians(value)),
-        high=LEANEST,
-    )
-
-
-def over_lean_of_prisms(problem: Problem) -> Family[Any]:
-    """Return the family over lean that limit analysis knows: of the same blocks in space.
-
-    Raises
-    ------
-    InputError
-        As of `blocksim.blocks.space.extruded.extruded`.
-    """
+def _over_lean(problem: Problem) -> Family[Any]:
+    """Return the family over lean, of the same blocks in space."""
     from blocksim.blocks.space.extruded import extruded
 
     require_upright(problem, "--over", "lean")
@@ -312,7 +299,7 @@ def _over_parameter(problem: Problem[Any], kind: Kind[Any], name: str) -> Family
     known, low, high = kind.number(name)
     now = kind.value(name)
     ends = max(low, now / WIDEST), min(high, now * WIDEST)
-    scan = Scan(lambda value: problem.but(**{name: value}), ends, now)
+    scan = Scan(lambda value: asked_as(problem.but(**{name: value})), ends, now)
     return Family(
         problem=problem,
         name=name,

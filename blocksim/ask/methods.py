@@ -98,27 +98,13 @@ def choose(
     return chosen
 
 
-def leaves_to_limit(method: str | Method) -> bool:
-    """Tell whether limit analysis may answer: it is asked, or `auto`."""
-    return method in {"auto", "limit"}
-
-
-def asked_as(problem: Problem[Any], method: str | Method) -> Problem[Any]:
-    """Return what a method is asked about: prisms in space where a problem of the plane leans.
-
-    Limit analysis is exact there. What has no prisms (ground that shakes, blocks that crush)
-    is left to engines by `auto`.
-    """
-    if problem.in_space or problem.is_planar or not leaves_to_limit(method):
+def asked_as(problem: Problem[Any]) -> Problem[Any]:
+    """Return what is asked about: prisms in space where a problem of the plane leans."""
+    if problem.in_space or problem.is_planar:
         return problem
     from blocksim.blocks.space.extruded import extruded
 
-    try:
-        return extruded(problem)
-    except InputError:
-        if method == "limit":
-            raise
-        return problem
+    return extruded(problem)
 
 
 def _cheapest(tol: float, problem: Problem[Any] | None, *, moving: bool) -> Method:
@@ -128,7 +114,7 @@ def _cheapest(tol: float, problem: Problem[Any] | None, *, moving: bool) -> Meth
         fine = each.finest <= (tol or math.inf) and each.is_static <= (not moving)
         if each.name != "theory" and fine and not _beyond(each, problem):
             return each
-    last = next(each for each in _shipped() if each.is_spatial)
+    last = ENGINES[NAMES[-1]]
     raise InputError("method", "auto", f"another: {_beyond(last, problem)}")
 
 
@@ -174,9 +160,6 @@ def _beyond(method: Method, problem: Problem[Any] | None) -> str:
         return f"limit, or no strength: blocks of {method.name} do not crush"
     if bears(problem) and method.name != "limit":
         return f"limit, or no --fill-passive: soil in {method.name} gives way to nothing"
-    if not problem.is_planar and not method.is_spatial:
-        able = " or ".join(each.name for each in _shipped() if each.is_spatial)
-        return f"{able} where gravity leans out of the plane"
     if problem.is_moving and not (isinstance(method, Engine) and method.shakes):
         able = ", ".join(each.name for each in _shipped() if each.shakes)
         what = "ground that shakes" if problem.shaking else "blocks that begin in motion"
@@ -210,10 +193,7 @@ def chosen_words(method: str | Method, chosen: Method) -> str:
     """Say what `auto` took and why, to be added to the reason of an answer."""
     if method != "auto":
         return ""
-    if chosen.is_spatial:
-        seen = "can move blocks out of the plane"
-    else:
-        seen = "sees the blocks as built" if chosen.is_static else "can move blocks"
+    seen = "sees the blocks as built" if chosen.is_static else "can move blocks"
     fine = f"brackets down to {chosen.finest:g}" if chosen.finest else "is exact"
     return f"; {chosen.name}, as no cheaper method {seen} and {fine}"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Unpack, cast
 
-from blocksim.ask.methods import choose
+from blocksim.ask.methods import asked_as, choose
 from blocksim.ask.options import Asked, Options, problem_of, taken
 from blocksim.blocks.assembly import Blocks
 from blocksim.engines import get_engine
@@ -47,10 +47,8 @@ def simulate(
     >>> fall.poses.shape[1:], bool(fall.displacement[-1] > 0.01)
     ((9, 3), True)
     """
-    given, problem = (
-        taken(options, "reduce", "tol", "confirm"),
-        cast("Problem[Any]", problem_of(asked)),
-    )
+    given = taken(options, "reduce", "tol", "confirm")
+    problem = asked_as(cast("Problem[Any]", problem_of(asked)))
     chosen = choose(given.method, problem=problem, moving=True, settings=given.settings)
     engine = get_engine(chosen)
     if problem.is_moving:

@@ -8,9 +8,8 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from blocksim.blocks.assembly import PLANAR, SPATIAL, SUPPORT, Array, Assembly
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly
 
 if TYPE_CHECKING:
     from blocksim.blocks.space.assembly import SpatialAssembly
@@ -102,7 +101,7 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
 
 
 def overlap_and_slip(assembly: Assembly, poses: Array) -> tuple[float, float]:
-    """Deepest overlap at the end of a joint, and largest slip of one, in the plane or across.
+    """Deepest overlap at the end of a joint, and largest slip of one.
 
     Both are shares of the largest motion of a joint: opening by rotation, or slip. A motion
     that contacts allow has next to no overlap; one driven by contacts that have not converged
@@ -113,36 +112,10 @@ def overlap_and_slip(assembly: Assembly, poses: Array) -> tuple[float, float]:
     # A corner has no length to open by rotation: it parts.
     turned = np.abs(motion.turn) * joints.length
     moves = [np.where(joints.is_corner, np.abs(motion.gap[:, 0]), turned), slip]
-    if poses.shape[1] == SPATIAL:
-        # Front and back: what turns about the joint's tangent.
-        rocked, across = _beyond_the_plane(assembly, poses)
-        gap, slip = gap - rocked, np.maximum(slip, across)
-        moves += [rocked, across]
     moved = max(float(move.max(initial=0.0)) for move in moves)
     if not moved > 0:
         return 0.0, 0.0
     return max(0.0, -float(gap.min())) / moved, float(slip.max()) / moved
-
-
-def _beyond_the_plane(assembly: Assembly, poses: Array) -> tuple[Array, Array]:
-    """How far each joint opens at one of its faces and slips, across the plane.
-
-    To first order in the rotations, in units of the assembly's size, shape (joints,) each.
-    """
-    before, after, ends, _, tangent, *_ = assembly.joint_arrays
-    middle = ends.mean(axis=1)
-    centres = assembly.built[:, :2]
-    beyond = np.vstack([poses[:, PLANAR:], np.zeros(3)])
-    depths = np.append(assembly.depths, np.inf)
-    half = np.minimum(depths[before], depths[after]) / 2
-
-    def across(block: NDArray[np.int64]) -> Array:
-        arm = middle - centres[block]
-        turn = beyond[block, 1:]
-        return beyond[block, 0] + turn[:, 0] * arm[:, 1] - turn[:, 1] * arm[:, 0]
-
-    rocked = np.einsum("ji,ji->j", beyond[after, 1:] - beyond[before, 1:], tangent)
-    return np.abs(rocked) * half, np.abs(across(after) - across(before))
 
 
 ACTIVE = 0.02

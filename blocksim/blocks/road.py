@@ -69,7 +69,9 @@ def _dispersed(profile: Profile, low: float, high: float, dispersal: Dispersal) 
     shares, points = profile.spread(places, dispersal)
     at, link = np.nonzero(shares)
     borne = shares[at, link] * weights[at] / wide
-    return list(zip(profile.owner[link].tolist(), borne.tolist(), points[at, link], strict=True))
+    return list(
+        zip(profile.owner[link].tolist(), borne.tolist(), points[at, link], strict=True)
+    )
 
 
 def profile_of(assembly: Assembly) -> Profile:

@@ -9,6 +9,7 @@ from typing import Any
 from blocksim.arch.theory import least_thickness
 from blocksim.ask.answer import Check
 from blocksim.ask.check import check
+from blocksim.ask.methods import asked_as
 from blocksim.cli.acting import Loading
 from blocksim.cli.built import Given
 from blocksim.cli.options import named_options, refuse
@@ -32,17 +33,16 @@ def write_still(
 ) -> None:
     """Draw what stands still: a sheet of what is built, or the arch at its least thickness.
 
-    An arch whose gravity leans out of its plane is drawn in space, where it is asked about.
+    What leans out of its plane is drawn in space, where it is asked about.
     """
     solid = "another kind: a page to turn around (.html) is of blocks in space"
     if scene is not None or loading.given or given.lean is not None or is_thick(given):
         problem = anything_asked(scene, given, loading, thick=given.lean is None)
         if problem.in_space or not problem.is_planar:
+            problem = asked_as(problem)
             refuse({"must_rest": must_rest})
             perspective = "a .png, .svg or .pdf: it is drawn in perspective; or .html, to turn "
             require(kind != "dxf", "--out", str(out), f"{perspective}it around")
-            seen = problem.in_space or method in {None, "auto", "limit"}
-            require(seen, "--method", method, "limit, or left out: it leans out of its plane")
         else:
             require(kind != "html", "--out", str(out), solid)
             as_built = "limit or an engine: it is drawn as built"

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from blocksim.ask.check import check
-from blocksim.ask.methods import choose
+from blocksim.ask.methods import asked_as, choose
 from blocksim.ask.rest import let_go, rest_words
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
@@ -92,7 +92,7 @@ def recordings(
         said = {**asdict(given), **asdict(loading), "method": method, "must_rest": must_rest}
         refuse(said, why="left out: the recording says it")
         return [load_recording(Path(scene)), *second]
-    problem = anything_asked(scene, given, loading)
+    problem = asked_as(anything_asked(scene, given, loading))
     if must_rest:
         refuse({"must_rest": must_rest and problem.in_space})
         return [_along_motion(problem, method), *second]

@@ -211,8 +211,6 @@ class Method:
         What it can tell.
     finest : float
         Smallest relative width of a bracket it can answer for; its error is less.
-    is_spatial : bool
-        Whether it sees motion out of the plane.
     moves_supports : bool
         Whether it can follow supports that move.
     adjustable : tuple of str
@@ -229,7 +227,6 @@ class Method:
     name: str
     sees: str
     finest: float
-    is_spatial: bool = False
     moves_supports: bool = False
     adjustable: tuple[str, ...] = ()
     chart: Mapping[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])

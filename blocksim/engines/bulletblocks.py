@@ -13,12 +13,11 @@ How a near-critical arch has to be put into it, each point measured:
 - Bodies sink until they overlap by the slop, so they start with just that overlap.
 - Points of contact closer than Bullet's breaking threshold replace each other. It is a
   share of a box's size.
-- Where gravity lies in the plane so does all motion, by symmetry. Sweeps break it, though:
+- Gravity lies in the plane, and so does all motion, by symmetry. Sweeps break it, though:
   of two contacts across the plane the first takes more, and walls rock out of the plane
-  for as long as they are solved. There inertias out of the plane are beyond reach (`LOCK`),
+  for as long as they are solved. So inertias out of the plane are beyond reach (`LOCK`),
   and a joint is so narrow that Bullet makes one contact of two. A million times the true
   ones, as others take, leave a hundred times more that no sweeps remove (1e-6 g).
-- Where gravity leans out of the plane inertias are the true ones.
 
 Bullet's x and y are those of the assembly's plane, z is out of it. So the two
 directions of friction Bullet chooses at rest lie in the plane and across it.
@@ -40,13 +39,13 @@ from blocksim.blocks.problem import Problem
 from blocksim.engines.boxes import EDGE, TURNS, UNTURNED, Frame, edge, plate
 from blocksim.engines.bulletparts import Ends, Joints, Link, let_go, linked, met
 from blocksim.engines.bulletspace import SLOP, Space, State, friction_share
-from blocksim.engines.faces import LEDGE, LEDGE_SHARE, Side, reaching, sides_of
+from blocksim.engines.faces import LEDGE_SHARE, Side, reaching, sides_of
 from blocksim.engines.solids import Polygons, obj_text, prism
 
 OVERLAP = SLOP
 """Of two closed faces: they would sink until they overlap by it [size]."""
 LOCK = 1e12
-"""Inertias out of the plane where gravity lies in it [mean mass, size squared]."""
+"""Inertias out of the plane [mean mass, size squared]."""
 NARROW, MERGED = 0.04, 0.1
 """Depth of a joint there, in units of its length, and Bullet's breaking threshold, in units
 of half a box's diagonal: contacts across the plane are one, those along it are two."""
@@ -70,7 +69,7 @@ class Planar(Polygons):
         self.frame = Frame()
         self.reach: Array = self.assembly.reach / self.assembly.size
         self.states = [self._at(index) for index in range(len(self.assembly.blocks))]
-        self.breaking = MERGED if problem.is_planar else _breaking(self.assembly)
+        self.breaking = MERGED
 
     def loads(self, poses: Array) -> Array | None:
         """Return loads besides gravity, (blocks, 6); None where there are none."""
@@ -93,8 +92,6 @@ class Planar(Polygons):
         Impacts kick blocks out of the plane, by 1e-3 of their velocity. What is put back loses
         its contacts, and sinks: so only what is off is.
         """
-        if not self.problem.is_planar:
-            return
         for index in np.flatnonzero(np.abs(poses[:, PLANAR]) > BESIDE):
             (x, y, _), turn, (right, up, _), spin = space.state(bodies[index])
             space.put(bodies[index], State((x, y, 0.0), turn, (right, up, 0.0), spin))
@@ -120,7 +117,7 @@ class Planar(Polygons):
         problem, joints = self.problem, self.assembly.joint_arrays
         between = (joints.before != SUPPORT) & (joints.after != SUPPORT)
         is_one = not (problem.friction[between] != problem.mu).any()
-        return problem.is_planar and is_one and problem.mu > 0
+        return is_one and problem.mu > 0
 
     def layered(self, space: Space) -> tuple[list[int], Joints]:
         """Build anew, of bodies without links, and those of the support one for each joint."""
@@ -186,8 +183,8 @@ def _masses(problem: Problem, index: int) -> list[float] | None:
     """Return the mass of a block and its inertias about x, y and z; a support has none."""
     if index == SUPPORT:
         return None
-    mass, _, inertia, _, *across = problem.assembly.spatial_masses[index].tolist()
-    return [mass, *([LOCK, LOCK] if problem.is_planar else across), inertia]
+    mass, _, inertia = problem.assembly.masses[index].tolist()
+    return [mass, LOCK, LOCK, inertia]
 
 
 def _boxes(problem: Problem, reaches: Array | None = None) -> dict[int, list[Link]]:
@@ -195,7 +192,7 @@ def _boxes(problem: Problem, reaches: Array | None = None) -> dict[int, list[Lin
     assembly = problem.assembly
     found: dict[int, list[Link]] = defaultdict(list)
     for joint, sides in enumerate(sides_of(assembly)):
-        deep, pair = _depths(problem, sides), sides
+        deep, pair = _depths(sides), sides
         if reaches is not None:
             pair = reaching(sides, assembly.joint_arrays.ends[joint], reaches[joint])
         for side, depth, sense in zip(pair, deep, (-1.0, 1.0), strict=True):
@@ -207,16 +204,11 @@ def _boxes(problem: Problem, reaches: Array | None = None) -> dict[int, list[Lin
     return found
 
 
-def _depths(problem: Problem, sides: tuple[Side, Side]) -> tuple[float, float]:
+def _depths(sides: tuple[Side, Side]) -> tuple[float, float]:
     """Tell how deep both boxes of a joint are, of which the longer is deeper, too."""
     lengths = [side.length for side in sides]
-    if problem.is_planar:
-        depth = NARROW * (min(lengths) or EDGE)
-        more = depth * LEDGE_SHARE
-    else:
-        depths = problem.assembly.depths
-        depth = min(float(depths[each.body]) for each in sides if each.body != SUPPORT)
-        more = 2 * LEDGE
+    depth = NARROW * (min(lengths) or EDGE)
+    more = depth * LEDGE_SHARE
     return (depth, depth + more) if lengths[1] > lengths[0] else (depth + more, depth)
 
 

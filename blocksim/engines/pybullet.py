@@ -122,7 +122,7 @@ class Bodies(Moving):
 
 ENGINE = Engine(
     name="pybullet",
-    sees="motion in space: the same, and out of the plane",
+    sees="motion in the plane and in space: onset and collapse with Coulomb friction",
     library="pybullet",
     remedy="pip install pybullet with Python 3.11 or older, for which it has wheels",
     version_of=lambda: version("pybullet"),
@@ -132,7 +132,6 @@ ENGINE = Engine(
     build_in_space=blocks_in_space,
     adjustable=("step", "sweeps", "hold_sweeps", "still", "rest"),
     finest=1e-3,
-    is_spatial=True,
     most_friction=MOST_FRICTION,
     takes_forces=True,
     tells_forces=True,

@@ -38,13 +38,14 @@ ANY_THICKNESS = "two joints on each half, and a line of thrust through the middl
 class ArchOffers(Offers):
     """What is known of an arch.
 
-    `problem`: Of this arch, under its own weight; gravity may lean out of the plane.
+    `problem`: Of this arch, under its own weight.
     `maker`: What made it, and makes it of other ratios.
     """
 
+    methods = ("limit", "theory")
+
     def __init__(self, arch: Arch, problem: Problem, maker: CircularArch) -> None:
         self.arch, self.problem, self.maker = arch, problem, maker
-        self.methods = ("limit", "theory") if problem.is_planar else ()
 
     @cached_property
     def built(self) -> LimitState:
@@ -69,8 +70,8 @@ class ArchOffers(Offers):
 
     @property
     def stands(self) -> bool | None:  # type: ignore[override]
-        """Whether forces of equilibrium exist; None where gravity leans."""
-        return self.built.stands_at(self.arch.eta) if self.problem.is_planar else None
+        """Whether forces of equilibrium exist."""
+        return self.built.stands_at(self.arch.eta)
 
     def static(self, method: str) -> Static | None:
         """Compare the thickness with the least one."""
@@ -92,16 +93,12 @@ class ArchOffers(Offers):
         return Static(verdict=verdict, evidence=found, joints=joints, mode=mode)
 
     def carried(self, joint: int | None = None) -> Carried | None:
-        """Return what the arch carries; None where gravity leans."""
-        if not self.problem.is_planar:
-            return None
+        """Return what the arch carries."""
         return carried_by_arch(self.arch, self.problem, joint)
 
     def proof(self, exact: Exact) -> Proof | None:
         """Prove it by forces well within the arch, or by its mechanism."""
         arch, problem = self.arch, self.problem
-        if not problem.is_planar:
-            return None
         if self.built.stands_at(arch.eta):
             forces = standing_forces(arch, problem)
             return None if forces is None else proof_of_rest(exact, forces)

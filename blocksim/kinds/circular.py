@@ -254,12 +254,13 @@ class CircularArch(CurvedArch):
         return super().built_of(size) if plain is None else Built(assembly=plain.assembly())
 
     def offers(self, problem: Problem) -> ArchOffers | None:
-        """Return what is known of the arch under its own weight, upright or leaning."""
+        """Return what is known of the arch, upright under its own weight."""
         arch = self.shape
         # Blocks or friction may have been exchanged.
         mine = self.fill is None and problem.assembly is self.built.assembly
         alike = bool((problem.friction == problem.mu).all()) and problem.mu > 0
-        still = not problem.is_moving and not problem.is_loaded and not problem.gravity[0]
+        upright = problem.has_statics and not problem.gravity[0]
+        still = upright and not problem.is_loaded
         if arch is None or not (mine and alike and still) or problem.strength is not None:
             return None
         from blocksim.kinds.archoffers import ArchOffers

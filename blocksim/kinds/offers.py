@@ -149,8 +149,8 @@ def carried_of(
 ) -> Carried | None:
     """Find what anything carries, an arch under its own weight by its own statics.
 
-    None in space, and where gravity leans out of the plane, or the ground shakes: statics in
-    the plane do not tell what happens then.
+    None in space, and where the ground shakes: statics in the plane do not tell what happens
+    then.
 
     Parameters
     ----------

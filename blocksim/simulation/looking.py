@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import Array
+from blocksim.blocks.assembly import PLANAR, Array
 from blocksim.blocks.joints import overlap_and_slip
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.parting import overlap_and_slip_in_space
@@ -32,14 +32,12 @@ class Looking:
     `asked`: Whose forces are asked for, where the engine knows other blocks.
 
     It has:
-    `asks`: Whether limit analysis can be asked about it.
     `far`: How far the farthest block is from the origin [size].
     """
 
     def __init__(self, problem: Problem[Any], asked: Problem[Any] | None = None) -> None:
         self._problem, self._asked, self._in_space = problem, asked or problem, problem.in_space
         self.assembly = problem.assembly
-        self.asks = problem.in_space or problem.is_planar
         self.far = float(np.abs(self.assembly.centres).max()) / self.assembly.size
 
     def _shares(self, poses: Array) -> tuple[float, float]:
@@ -63,7 +61,7 @@ class Looking:
             masses = assembly.weights / self._problem.unit_force
             moving = float(masses @ ((rates[:, :3] ** 2).sum(axis=1) + spin))
         else:
-            moving = float((assembly.spatial_masses[:, : rates.shape[1]] * rates**2).sum())
+            moving = float((assembly.masses * rates[:, :PLANAR] ** 2).sum())
         return float((self._problem.applied_forces(built) * rates).sum()), moving
 
     def equilibrium(self) -> tuple[bool, Array | None]:

@@ -23,8 +23,7 @@ So does one that slides, as the onset test looks for forces of equilibrium first
 engine does not decide, or the guess is still wrong after `ROUNDS`, it is given all blocks.
 
 Joints are looked at while the blocks are held; let go, what is merged stays merged, for the
-2e-3 of a size a verdict takes. Nothing is merged where gravity leans out of the plane or the
-ground shakes.
+2e-3 of a size a verdict takes. Nothing is merged where the ground shakes.
 """
 
 from __future__ import annotations

@@ -84,9 +84,8 @@ class Observation:
         for.
     `motion`: None where the blocks were not let go.
     `joints`, `joints_in_motion`: What joints do as a collapse starts, by the onset test, and a
-        little later, in the moving run; closed where the blocks stand. Empty where gravity
-        leans out of the plane and they collapse: their states are those of motion in the plane;
-        and in space. The second is empty where there was no moving run, too.
+        little later, in the moving run; closed where the blocks stand. Empty in space; the
+        second is empty where there was no moving run, too.
     `rates`, (blocks, 3 or 6): Velocities in proportion to those with which a collapse starts,
         columns as poses.
     `blocks`, `splits`: Blocks that were simulated, and joints that a reduction had to split
@@ -183,15 +182,15 @@ def conclude(held: Held[Any], *, moving: bool, progress: Progress = silent) -> O
             verdict = Verdict.UNDECIDED
     evidence += _asides(held, motion)
     evidence += aside("settings", given_words(simulation.given))
-    in_space, planar = simulation.problem.in_space, simulation.problem.is_planar
+    in_space = simulation.problem.in_space
     joints = () if in_space else closed_joints(simulation.assembly.joint_angles)
     in_motion = joints if motion else ()
     rates = None
     if verdict is Verdict.COLLAPSES:
         rates = first.mechanism - held.built
-        joints = classify(simulation.assembly, first.mechanism) if planar else ()
-        seen = planar and motion
-        in_motion = classify(simulation.assembly, motion.mechanism) if motion and seen else ()
+        if not in_space:
+            joints = classify(simulation.assembly, first.mechanism)
+            in_motion = classify(simulation.assembly, motion.mechanism) if motion else ()
     return Observation(
         verdict=verdict,
         evidence=evidence,
@@ -213,9 +212,6 @@ def _asides(held: Held[Any], motion: Motion[Any] | None) -> tuple[Evidence, ...]
         most = len(simulation.assembly.blocks)
         words = reduced_words(simulation.reduction.by, simulation.blocks, most, held.splits)
         said.append(Evidence("reduction", words))
-    if motion and not (simulation.problem.in_space or simulation.problem.is_planar):
-        way = f"{motion.recording.beyond_plane[-1]:.1e} {simulation.length}"
-        said.append(Evidence("moving run out of plane", f"moved {way} out of its plane"))
     if motion and simulation.unsure:
         said.append(Evidence("settings", simulation.unsure))
     if simulation.rougher is not None:

@@ -32,8 +32,7 @@ looks for rest first.
 Some engines take less friction than was asked for. What rests with less rests with more. What
 falls may owe that to the friction it lacks (a wall of ten blocks, mu inf, 0.1 % below its
 load: it slides at the 10 that Bullet allows), but not if no joint slides (`STICKS`). A collapse
-that slides is believed only where no forces exist with the friction asked for either, and not
-where gravity leans out of the plane and that cannot be asked.
+that slides is believed only where no forces exist with the friction asked for either.
 
 Thin joints and many blocks take an engine millions of sweeps from nothing. So it is helped
 after `unaided` of its settings: it begins anew with forces of equilibrium, or where there are
@@ -155,11 +154,11 @@ def onset(world: World, simulation: Simulation[Any], progress: Progress = silent
     if begun is not None:
         cast("TakesForces", world).begin(begun)
     may_rest = may_slide = False
-    takes = engine.takes_forces and look.asks and settings.unaided is not None
+    takes = engine.takes_forces and settings.unaided is not None
     helped = begun is not None or not takes
     # Without bound on friction even an engine that looks for rest can miss it: forces may be
     # wedged, a thousand times their pressures.
-    unasked = look.asks and not (engine.finds_rest and look.is_bounded(engine))
+    unasked = not (engine.finds_rest and look.is_bounded(engine))
     while True:
         accelerations = world.hold(sweeps)
         total += sweeps
@@ -225,9 +224,7 @@ def _seen(
 def _may_hold(problem: Problem[Any], mechanism: Array) -> bool:
     """Tell whether blocks may rest by friction that the engine did not take."""
     look = Looking(problem)
-    if look.slip(mechanism) <= STICKS:
-        return False
-    return not look.asks or look.equilibrium()[0]
+    return look.slip(mechanism) > STICKS and look.equilibrium()[0]
 
 
 def _driven(look: Looking, built: Array, accelerations: Array) -> bool:

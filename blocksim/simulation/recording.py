@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Generic, Literal, cast
 
 import numpy as np
 
-from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Block, Blocks
+from blocksim.blocks.assembly import SPATIAL, Array, Block, Blocks
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.record import from_record, to_record
@@ -90,14 +90,10 @@ class Recording(Shown, Generic[Blocks]):
     @property
     def displacement(self) -> Array:
         """Largest displacement of any corner since the release [r], shape (frames,)."""
-        return self._moved()
-
-    @property
-    def beyond_plane(self) -> Array:
-        """Largest displacement of any corner by motion out of the plane [r], (frames,)."""
-        if self.problem.in_space or self.poses.shape[-1] == PLANAR:
-            return np.zeros(len(self.times))
-        return self._moved(beyond=True)
+        at_once = max(1, CHUNK // max(1, self.poses[0].size))
+        starts = range(0, len(self.poses), at_once)
+        parts = (self.poses[start : start + at_once] - self.poses[0] for start in starts)
+        return np.concatenate([self.assembly.displacement(part) for part in parts])
 
     @property
     def unsolved(self) -> float:
@@ -122,17 +118,6 @@ class Recording(Shown, Generic[Blocks]):
         width_of: Any = _width_in_space if self.problem.in_space else _width
         width = min(width_of(block) for block in blocks)
         return deepest * self.assembly.size / width
-
-    def _moved(self, *, beyond: bool = False) -> Array:
-        """Displacements since the release, or those beyond the plane alone."""
-        at_once = max(1, CHUNK // max(1, self.poses[0].size))
-        found: list[Array] = []
-        for start in range(0, len(self.poses), at_once):
-            moved = self.poses[start : start + at_once] - self.poses[0]
-            if beyond:
-                moved[..., :PLANAR] = 0.0
-            found.append(self.assembly.displacement(moved))
-        return np.concatenate(found)
 
     def seconds(self, gravity: float) -> Array:
         """Return times in seconds for a gravity in m/s^2."""

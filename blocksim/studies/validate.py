@@ -16,7 +16,7 @@ from blocksim.arch.circular import ETA_MAX, Arch
 from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode, observed_mode
 from blocksim.ask.bracket import bracket
-from blocksim.ask.methods import choose
+from blocksim.ask.methods import asked_as, choose
 from blocksim.blocks.entries import ExpectEntry
 from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
@@ -65,7 +65,7 @@ class Question(NamedTuple):
         if engine and len(problem.assembly.blocks) > engine.most_blocks:
             return f"more than {engine.most_blocks} blocks"
         try:
-            choose(self.method, problem=problem)
+            choose(self.method, problem=asked_as(problem))
         except InputError as error:
             return error.allowed
         return ""
@@ -77,18 +77,17 @@ def structures(*, quick: bool) -> list[Known]:
     return [known for known in every if known.quick or not quick]
 
 
-def usual(case: Known, expected: ExpectEntry) -> tuple[str, ...]:
+def usual(expected: ExpectEntry) -> tuple[str, ...]:
     """Return the methods that are asked about a structure where none is named."""
-    leans = not (case.problem.in_space or case.problem.is_planar)
-    part = "structures" if expected.modes is None and not leans else "arches"
+    part = "structures" if expected.modes is None else "arches"
     return tuple(name for name in NAMES if part in ENGINES[name].validates)
 
 
 def _questions(case: Known, engines: Iterable[str] | None) -> Iterator[Question]:
     """Go through all that is asked of a structure, whether a method is asked it or not."""
     for expected in case.expect:
-        names = usual(case, expected) if engines is None else tuple(dict.fromkeys(engines))
-        if expected.modes is None and (case.problem.in_space or case.problem.is_planar):
+        names = usual(expected) if engines is None else tuple(dict.fromkeys(engines))
+        if expected.modes is None:
             names = (LIMIT, *names)
         yield from (Question(case, expected, name) for name in names)
 
