@@ -28,11 +28,10 @@ from scipy.optimize import brentq
 
 from analysis.command import run
 from analysis.rows import FIGURES, read_kept, write_rows
-from blocksim import bracket, structure_of, sweep
+from blocksim import bracket, load_design, read_rows, structure_of, sweep
 from blocksim.ask.families import family_of
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.shaking import Shaking
-from blocksim.sweeps import load_design, read_rows
 from blocksim.view.style import FONT, VERDICTS
 from tests.structure_cases import case, scenes
 

@@ -30,9 +30,10 @@ from blocksim import (
     write_csv,
     write_parquet,
 )  # fmt: skip
-from blocksim.sweeps import Case, answers, run
+from blocksim.sweeps import answers, run
 from blocksim.sweeps import table as tables
 from blocksim.sweeps.answers import Answered, Asked, answer
+from blocksim.sweeps.case import Case
 from blocksim.sweeps.shards import identities
 
 DIRECT = 'half_angle_deg = 90\nmu = 0.7\nratio = 0.999\nmethod = "direct"\n[settings]\n'

@@ -17,14 +17,13 @@ from report_rows import ARCH, ROW, sliding
 from running import inside as blocksim
 from test_scenario import ARCHES, LEANING
 
-from blocksim import CircularArch, Mode, Verdict, load_recording, load_structure
+from blocksim import CircularArch, Mode, Verdict, load_design, load_recording, load_structure
 from blocksim.cli.studies import answer_table
 from blocksim.cli.terminal import show
 from blocksim.common.files import json_text
 from blocksim.kinds.loading import Known, load_known
 from blocksim.studies.agreement import disagreements
 from blocksim.studies.validate import parted, unasked, validate, validate_one
-from blocksim.sweeps import load_design
 
 
 def test_rows_agree_with_limit_analysis() -> None:

@@ -24,13 +24,23 @@ from running import blocksim as run_it
 from running import inside, small_files
 
 import blocksim
-from blocksim import Arch, CircularArch, InputError, MachineError, Tower, check, simulate, sweep
+from blocksim import (
+    Arch,
+    CircularArch,
+    InputError,
+    MachineError,
+    Tower,
+    check,
+    simulate,
+    sweep,
+    write_csv,
+    write_parquet,
+)
 from blocksim.cli.proving import write_proof
 from blocksim.common.files import make_folder, require_place, write_folder, write_whole
 from blocksim.common.sheets import write_sheet
 from blocksim.report.poses import write_recording_csv, write_recording_json
 from blocksim.report.sheetpage import structure_page
-from blocksim.sweeps import write_csv, write_parquet
 from blocksim.view.drawing import save_figure
 from blocksim.view.models import write_model
 from blocksim.view.sheet import sheet_of

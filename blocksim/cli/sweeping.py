@@ -11,10 +11,11 @@ from blocksim.cli.options import JSON, require_given
 from blocksim.cli.output import answer_with, progress
 from blocksim.common.checks import Range
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
-from blocksim.sweeps import Summary, load_design, write_parquet
-from blocksim.sweeps import sweep as ask_sweep
 from blocksim.sweeps.cluster import cluster
-from blocksim.sweeps.table import require_parquet, write_csv
+from blocksim.sweeps.load import load_design
+from blocksim.sweeps.run import Summary
+from blocksim.sweeps.run import sweep as ask_sweep
+from blocksim.sweeps.table import require_parquet, write_csv, write_parquet
 
 
 def sweep(

@@ -8,8 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import matplotlib.pyplot as plt
 
-from blocksim import sweep
-from blocksim.sweeps import write_csv
+from blocksim import sweep, write_csv
 
 asked = {
     "half_angle_deg": [90, 125, 140],
