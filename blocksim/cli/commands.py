@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
 
 from blocksim.ask.methods import choose
 from blocksim.ask.simulate import simulate as let_go
@@ -11,18 +10,13 @@ from blocksim.ask.spread import Spreading
 from blocksim.blocks.problem import Problem
 from blocksim.cli.acting import Loading
 from blocksim.cli.arguments import argument, option
-from blocksim.cli.built import Given
+from blocksim.cli.built import Given, given_of
 from blocksim.cli.drawing import write_still
 from blocksim.cli.filming import (
-    BESIDE,
     ENGINE,
-    HEIGHT,
     MODELS,
-    PIXELS,
-    SLOW,
     TABLES,
-    TIME,
-    VIEW,
+    Filmed,
     export,
     film,
     recordings,
@@ -110,16 +104,12 @@ def _spread(
 def render(
     given: Given,
     loading: Loading,
+    filmed: Filmed,
     out: Path | None = option(
         "File to write: .pdf, .svg, .png or .dxf, .mp4 or .gif, or .glb, .gltf, "
         ".csv, .json of a recording, or .html to turn blocks in space around; required."
     ),
     scene: str | None = argument("Structure, or a recording: an .npz file."),
-    beside: Path | None = BESIDE,
-    view: Literal["2d", "3d"] = VIEW,
-    slow: float | None = SLOW,
-    time: float | None = TIME,
-    height: int | None = PIXELS,
     method: str | None = ENGINE,
     must_rest: bool = MUST_REST,
 ) -> None:
@@ -139,16 +129,19 @@ def render(
     out = out or Path()
     kind = picture_kind(out, (*FILMS, "png", "svg", "pdf", "dxf", "html", *MODELS, *TABLES))
     if kind in (*MODELS, *TABLES):
-        moving = {"beside": beside, "slow": slow, "time": time, "height": height}
+        moving = given_of(filmed, "beside", "slow", "time", "height")
         refuse(moving, why=f"left out of a .{kind}")
         export(out, kind, *recordings(scene, given, loading, method, None, must_rest=must_rest))
-    elif kind in FILMS or view == "3d" or beside or (scene or "").endswith(".npz"):
+    elif kind in FILMS or filmed.view == "3d" or filmed.beside or str(scene).endswith(".npz"):
         require(kind != "dxf", "--out", str(out), "another kind: a .dxf is of no motion")
-        require(time is None or kind not in FILMS, "--time", time, "left out of a film")
-        require_height(height or HEIGHT)
-        runs = recordings(scene, given, loading, method, beside, must_rest=must_rest)
-        film(out, runs, time, view=view, slow=slow, height=height or HEIGHT)
+        still = filmed.time is None or kind not in FILMS
+        require(still, "--time", filmed.time, "left out of a film")
+        require_height(filmed.height)
+        runs = recordings(scene, given, loading, method, filmed.beside, must_rest=must_rest)
+        film(out, runs, filmed)
     else:
-        refuse({"slow": slow, "time": time}, why="left out: the picture is of no motion")
-        require_pixels(height, kind)
-        write_still(out, kind, scene, given, loading, method, height, must_rest=must_rest)
+        moving = given_of(filmed, "slow", "time")
+        refuse(moving, why="left out: the picture is of no motion")
+        require_pixels(filmed.height, kind)
+        tall = filmed.height
+        write_still(out, kind, scene, given, loading, method, tall, must_rest=must_rest)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 from blocksim.ask.check import check
 from blocksim.ask.methods import asked_as, choose
@@ -44,26 +44,36 @@ ROUGH = 1e-4
 MODELS, TABLES = ("glb", "gltf"), ("csv", "json")
 """Endings of recordings as glTF, and as numbers."""
 
-BESIDE = option("A second recording, .npz, to show side by side.")
-VIEW = option("From the front, or in perspective.", default="2d")
-SLOW = option(
-    "Times slower than it happened (by default it takes about 6 s).",
-    range=Range(low=0, high=1000, above=True),
-)
-TIME = option(
-    "For .png, .svg, .pdf: time since the release, as the clock shows it (the end).",
-    range=Range(low=0, high=math.inf, unit="s"),
-)
-PIXELS = option("In pixels: of a frame (720 if left out; frames are 16:9) or a .png picture.")
 ENGINE = option(
     f"Simulates a structure: auto (if left out), {', '.join(NAMES)}{OWN}.", name="--method"
 )
 
 
-def require_height(height: int) -> None:
+@dataclass(frozen=True, kw_only=True)
+class Filmed:
+    """Options that say how motion is drawn. Those not given are None."""
+
+    heading: ClassVar[str] = "How motion is drawn"
+
+    beside: Path | None = option("A second recording, .npz, to show side by side.")
+    view: Literal["2d", "3d"] = option("From the front, or in perspective.", default="2d")
+    slow: float | None = option(
+        "Times slower than it happened (by default it takes about 6 s).",
+        range=Range(low=0, high=1000, above=True),
+    )
+    time: float | None = option(
+        "For .png, .svg, .pdf: time since the release, as the clock shows it (the end).",
+        range=Range(low=0, high=math.inf, unit="s"),
+    )
+    height: int | None = option(
+        "In pixels: of a frame (720 if left out; frames are 16:9) or a .png picture."
+    )
+
+
+def require_height(height: int | None) -> None:
     """Refuse a height of frames or pictures that is out of range."""
     low, high = HEIGHTS
-    fits = low <= height <= high and height % 2 == 0
+    fits = height is None or (low <= height <= high and height % 2 == 0)
     require(fits, "--height", height, f"an even number from {low} to {high}")
 
 
@@ -120,14 +130,17 @@ def _along_motion(problem: Problem, method: str | None) -> Recording:
         return let_go(problem, found.motion.accelerations, progress=report)
 
 
-def film(out: Path, shown: Sequence[Recording[Any]], at: float | None, **options: Any) -> None:
+def film(out: Path, shown: Sequence[Recording[Any]], how: Filmed) -> None:
     """Draw recordings into a file and say so."""
     from blocksim.view.video import STILLS, render
 
+    tall = how.height or HEIGHT
     with progress() as report:
-        made = render(shown, out, at=at, progress=report, **options)
+        made = render(
+            shown, out, view=how.view, slow=how.slow, at=how.time, height=tall, progress=report
+        )
     if out.suffix.removeprefix(".") in STILLS:
-        asked = at or 0.0
+        asked = how.time or 0.0
         end = made.ends_before(asked)
         later = f": {asked:g} is after the end, so it shows the end, {end}"
         say(f"wrote {out}{later if end else ''}")
