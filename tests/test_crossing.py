@@ -170,7 +170,7 @@ def test_every_kind_is_crossed(subject: tuple[str, ...]) -> None:
 
 def test_files_are_written_in_one_call(tmp_path: Path) -> None:
     done = inside(
-        *("bracket", *EIGHT.options(), "--vehicle", "lm1"),
+        *("bracket", *EIGHT.options(), "--vehicle", "lm1", "--along", "road"),
         *("--out", "e.csv", "--out", "e.svg", "--out", "e.dxf"),
         cwd=tmp_path,
     )

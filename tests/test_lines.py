@@ -26,7 +26,7 @@ OTHERS = [
     "check --span 8 --rise 3 --thickness 0.45 --voussoirs 31 --mu 0.7 --unit-weight 22 "
     "--fill 0.5 --point-load 2 50 --fill-friction-angle 30 --fill-pressure active",
     "bracket --span 8 --rise 3 --thickness 0.45 --voussoirs 31 --mu 0.6 --fill 0.5 "
-    "--vehicle 10@0,10@1.2",
+    "--vehicle 10@0,10@1.2 --along road",
 ]  # fmt: skip
 
 

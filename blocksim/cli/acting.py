@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from blocksim.blocks.assembly import STANDARD_GRAVITY
 from blocksim.blocks.shaking import COLUMNS, SHAPES, UPWARDS
@@ -138,6 +138,7 @@ class Crossed:
         ".toml file, or axles in kN at m, as 10@0,10@1.2.",
         metavar="NAME|FILE|AXLES",
     )
+    along: Literal["road"] | None = option("Where it goes; on the road if left out.")
     out: list[Path] | None = option(
         "A file to write; repeatable. With --vehicle: .csv, load factor and thrust "
         "at every place; .pdf, .svg, .png, their curve above the worst place; .dxf, the "

@@ -139,6 +139,8 @@ def bracket(
     """
     crosses = crossed.vehicle is not None
     if not crosses:
+        allowed = "left out, or --vehicle beside it"
+        require(crossed.along is None, "--along", crossed.along, allowed)
         require_curves(over, crossed.out)
     # The thickness of an arch under its own weight need not be given to be sought.
     sought = (

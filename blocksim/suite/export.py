@@ -1,4 +1,4 @@
-"""The suite as files: a scene each, in neutral JSON and in MJCF, which MuJoCo reads."""
+"""The suite as files: a scene each, in neutral JSON, MJCF (MuJoCo) and SDF (Gazebo, Drake)."""
 
 from __future__ import annotations
 
@@ -51,6 +51,41 @@ def mjcf(scene: Scene) -> bytes | None:
     return _text(root)
 
 
+def sdf(scene: Scene) -> bytes | None:
+    """Return a planar scene as SDF; None where SDF cannot say it.
+
+    That is of pushes, velocities at the start, and polyhedra, which SDF takes from other files.
+    """
+    if scene.pushes or scene.dimensions != 2 or any(map(_moves, scene.moving)):
+        return None
+    root = Xml.Element("sdf", version="1.9")
+    world = Xml.SubElement(root, "world", name=scene.name)
+    _says(world, "gravity", _said(_in_space(scene.gravity)))
+    for body in scene.bodies:
+        model = Xml.SubElement(world, "model", name=body.name)
+        _says(model, "static", "true" if body.fixed else "false")
+        _says(model, "pose", _said([*_in_space(body.centre), 0, 0, 0]))
+        link = Xml.SubElement(model, "link", name="link")
+        if not body.fixed:
+            inertial = Xml.SubElement(link, "inertial")
+            _says(inertial, "mass", repr(body.mass))
+            told = Xml.SubElement(inertial, "inertia")
+            for axis, value in zip("xyz", np.diag(_inertia(body)).tolist(), strict=True):
+                _says(told, f"i{axis}{axis}", repr(value))
+        for part, shape in enumerate(body.shapes):
+            collision = Xml.SubElement(link, "collision", name=f"part {part}")
+            _says(collision, "pose", _said([0, 0, -body.depth / 2, 0, 0, 0]))
+            line = Xml.SubElement(Xml.SubElement(collision, "geometry"), "polyline")
+            for corner in shape - body.centre:
+                _says(line, "point", _said(corner))
+            _says(line, "height", repr(body.depth))
+            surface = Xml.SubElement(Xml.SubElement(collision, "surface"), "friction")
+            ode = Xml.SubElement(surface, "ode")
+            for name in ("mu", "mu2"):
+                _says(ode, name, repr(scene.friction))
+    return _text(root)
+
+
 def _joints(body: Xml.Element, *, planar: bool) -> None:
     if not planar:
         Xml.SubElement(body, "freejoint")
@@ -75,6 +110,10 @@ def _velocity(body: Body) -> Array:
     return np.concatenate([velocity, spin if len(velocity) == 2 else np.resize(spin, 3)])
 
 
+def _moves(body: Body) -> bool:
+    return bool(np.any(_velocity(body)))
+
+
 def _corners(body: Body, shape: Array) -> Array:
     """Corners about the centre of mass, of a polygon those of its prism, (k, 3) float."""
     about = shape - body.centre
@@ -92,6 +131,10 @@ def _said(numbers: Array | Sequence[float]) -> str:
     return " ".join(repr(float(each)) for each in np.ravel(numbers))
 
 
+def _says(parent: Xml.Element, name: str, text: str) -> None:
+    Xml.SubElement(parent, name).text = text
+
+
 def _text(root: Xml.Element) -> bytes:
     Xml.indent(root)
     return Xml.tostring(root, xml_declaration=True, encoding="utf-8") + b"\n"
@@ -100,6 +143,7 @@ def _text(root: Xml.Element) -> bytes:
 WRITERS: dict[str, tuple[str, Callable[[Scene], bytes | None]]] = {
     "scenes": ("json", lambda scene: json_text(scene.record(), indent=1).encode() + b"\n"),
     "mjcf": ("xml", mjcf),
+    "sdf": ("sdf", sdf),
 }
 """Folders, each with the ending of its files and what writes one; None is left out."""
 
