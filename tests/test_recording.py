@@ -243,3 +243,25 @@ def test_older_recordings_of_arches_are_still_read(tmp_path: Path) -> None:
     assert found.mu == 0.7
     assert found.problem.gravity == pytest.approx([0.0, -math.cos(0.3), math.sin(0.3)])
     assert np.array_equal(found.poses, recording().poses)
+
+
+@pytest.mark.parametrize("lean", [0.0, 0.3])
+def test_older_recordings_that_tell_of_motion_out_of_the_plane_are_read(
+    tmp_path: Path, lean: float
+) -> None:
+    """Blocks that gravity took out of the plane are prisms: its z was towards who looks on."""
+    flat = recording()
+    beyond = np.zeros_like(flat.poses)
+    beyond[1:, :, 0] = 0.25
+    poses, path = np.concatenate([flat.poses, beyond], axis=2), tmp_path / "old.npz"
+    problem = flat.problem.leaning(lean) if lean else flat.problem
+    replace(flat, problem=problem, poses=poses).save(path)
+    found = load_recording(path)
+    assert found.problem.in_space is bool(lean)
+    places = found.poses * found.assembly.size
+    expected = flat.poses[..., :2] * ARCH.radius
+    assert places[..., [0, 2] if lean else [0, 1]] == pytest.approx(expected, rel=1e-12)
+    if lean:
+        assert places[1:, :, 1] == pytest.approx(-0.25 * ARCH.radius, rel=1e-12)
+        seconds = found.times * math.sqrt(found.assembly.size / ARCH.radius)
+        assert seconds == pytest.approx(flat.times, rel=1e-12)

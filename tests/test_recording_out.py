@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 import shutil
@@ -89,8 +88,6 @@ def rotations(recording: Recording) -> np.ndarray:
     poses = recording.poses
     vectors = np.zeros((*poses.shape[:2], 3))
     vectors[..., 2] = poses[..., 2]
-    if poses.shape[2] == 6:
-        vectors[..., :2] = poses[..., 4:]
     angle = np.linalg.norm(vectors, axis=-1)[..., None, None]
     x, y, z = np.moveaxis(vectors, -1, 0)
     zero = np.zeros_like(x)
@@ -106,8 +103,6 @@ def places(recording: Recording, point: np.ndarray) -> np.ndarray:
     poses = recording.poses
     centres = np.zeros((*poses.shape[:2], 3))
     centres[..., :2] = poses[..., :2]
-    if poses.shape[2] == 6:
-        centres[..., 2] = poses[..., 3]
     return centres * recording.assembly.size + rotations(recording) @ point
 
 
@@ -154,20 +149,6 @@ def test_json_has_geometry_and_poses(tmp_path: Path, fall: Recording, saved: Pat
     tilt = math.radians(30)
     gravity = [math.sin(tilt), -math.cos(tilt), 0]
     assert said["gravity_g"] == pytest.approx(gravity)
-
-
-def test_motion_out_of_the_plane_has_columns_of_its_own(
-    tmp_path: Path, spatial: Recording
-) -> None:
-    spatial.save(tmp_path / "run.npz")
-    out = tmp_path / "run.csv"
-    assert inside("render", str(tmp_path / "run.npz"), "--out", str(out)).returncode == 0
-    with out.open(newline="") as file:
-        header, *rows = csv.reader(file)
-    more = ["z_m", "rotation_x_rad", "rotation_y_rad"]
-    assert header == ["time_s", "block", "x_m", "y_m", "rotation_rad", *more]
-    read = np.array([row[2:] for row in rows], dtype=float).reshape(spatial.poses.shape)
-    assert read == pytest.approx(spatial.poses * [SIZE, SIZE, 1, SIZE, 1, 1], abs=1e-12)
 
 
 def written(recording: Recording, kind: str = "glb") -> bytes:

@@ -94,19 +94,6 @@ def test_free_fall_keeps_its_energy_and_a_push_is_seen() -> None:
     assert balance.gain > 0.1
 
 
-def test_energy_in_space_is_that_of_the_turned_axes() -> None:
-    """A block that spins about its own upright axis has the energy of that axis."""
-    arch = Arch(half_angle=math.pi / 2, eta=0.3, voussoirs=5, depth=0.5)
-    problem = CircularArch.of(arch, 0.8).problem()
-    poses = np.zeros((5, 6))
-    # Turned by a right angle about x, its own z axis is along -y of the space.
-    poses[0, 4] = math.pi / 2
-    spin = np.zeros((5, 6))
-    spin[0, 5] = 2.0
-    kinetic = energy(problem, poses, spin) - energy(problem, poses, np.zeros((5, 6)))
-    assert kinetic == pytest.approx(problem.assembly.masses[0, 2] * 2.0**2 / 2)
-
-
 def test_a_prism_is_written_with_faces_outwards() -> None:
     """By the divergence theorem its volume is that of the polygons times the depth."""
     square = np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)])

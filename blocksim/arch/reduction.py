@@ -43,8 +43,8 @@ if TYPE_CHECKING:
 
 UNTURNED = 1e18
 """Factor on the inertia of half a keystone."""
-MIRROR = np.array([-1.0, 1.0, -1.0, 1.0, 1.0, -1.0])
-"""Factors on a motion that make it the mirror image's, columns as poses."""
+MIRROR = np.array([-1.0, 1.0, -1.0])
+"""Factors on a motion that make it the mirror image's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +187,7 @@ class Reduction:
 
     def _mirrored(self, left: Array) -> Array:
         """Add the right half; a keystone is both its halves' mean."""
-        right = left[::-1] * MIRROR[: left.shape[1]]
+        right = left[::-1] * MIRROR
         if not self._keystone:
             return np.concatenate([left, right])
         middle = (left[-1:] + right[:1]) / 2

@@ -37,8 +37,8 @@ else:
 STANDARD_GRAVITY = 9.81
 """To turn weight into mass [m/s^2]."""
 PLANAR, SPATIAL = 3, 6
-"""Columns of poses and motions: x, y and rotation in the plane; then z, out of it, and the
-rotation vector's components along x and y, from engines in three dimensions."""
+"""Columns of poses and motions: x, y and rotation in the plane; in space x, y, z and a rotation
+vector."""
 
 
 class JointArrays(NamedTuple):
@@ -144,12 +144,8 @@ class Assembly:
         return float(np.mean(column(self.blocks, "mass"))) * STANDARD_GRAVITY
 
     def weights_under(self, gravity: Array) -> Array:
-        """Return gravity on each block as columns of motions, (blocks, 6) [mean weights]."""
-        weight = self.masses[:, :1]
-        found = np.zeros((len(weight), SPATIAL))
-        found[:, :2] = weight * gravity[:2]
-        found[:, PLANAR] = weight[:, 0] * gravity[2]
-        return found
+        """Return gravity on each block as columns of motions, (blocks, 3) [mean weights]."""
+        return self.masses * [gravity[0], gravity[1], 0.0]
 
     def of_load(self, load: Load, poses: Array | None = None) -> Array:
         """Return forces and moments of a load, (blocks, 3).
@@ -159,7 +155,7 @@ class Assembly:
         Parameters
         ----------
         load : Load
-        poses : (blocks, 3 or 6) float, optional
+        poses : (blocks, 3) float, optional
             Where the blocks are, by default where they were built: points turn with them.
         """
         found = np.zeros((len(self.blocks), PLANAR))
@@ -177,18 +173,6 @@ class Assembly:
                 x, y = cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1]
                 found[index, 2] += x * force[1] - y * force[0]
         return found
-
-    @cached_property
-    def spatial_masses(self) -> Array:
-        """The same for motions in three dimensions, shape (blocks, 6).
-
-        The moment of inertia in the plane is shared equally by the two axes in it, to
-        which the depth adds its part.
-        """
-        mass, inertia = self.masses[:, 0], self.masses[:, 2]
-        across = inertia / 2 + mass * self.depths**2 / 12
-        beyond = np.stack([mass, across, across], axis=1)
-        return frozen(np.hstack([self.masses, beyond]), (-1, SPATIAL))
 
     @cached_property
     def depths(self) -> Array:
@@ -302,7 +286,7 @@ class Assembly:
 
         Parameters
         ----------
-        moved : (..., blocks, 3 or 6) float
+        moved : (..., blocks, 3) float
             Displacements of the centres, in units of the size, and rotations.
 
         Returns
@@ -313,8 +297,4 @@ class Assembly:
         reach = (self.reach / self.size) ** 2
         square = moved**2
         shift, turn = square[..., 0] + square[..., 1], square[..., 2] * reach
-        if moved.shape[-1] == SPATIAL:
-            # About an axis in the plane a corner's lever has half the depth, too.
-            shift = shift + square[..., 3]
-            turn = turn + (square[..., 4] + square[..., 5]) * (reach + (self.depths / 2) ** 2)
         return np.sqrt(np.maximum(shift, turn)).max(axis=-1)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
-from blocksim.common.later import csgraph, sparse, transform
+from blocksim.common.later import csgraph, sparse
 
 Owner = NDArray[np.int64]
 """The body each block is part of, (blocks,); bodies are numbered from 0."""
@@ -121,21 +121,14 @@ def _merged(blocks: list[Block]) -> Block:
 def carried_poses(poses: Array, owner: NDArray[np.int64], offsets: Array) -> Array:
     """Return poses of blocks that bodies carry.
 
-    `poses`, (bodies, 3 or 6).
+    `poses`, (bodies, 3).
     `owner`, (blocks,): The body of each block.
     `offsets`, (blocks, 2): From the centre of the body to that of the block, as built [size].
     """
-    moved = poses[owner]
-    spatial = moved.shape[1] > PLANAR
-    turns, arms = np.zeros((2, len(moved), 3))
-    turns[:, 2] = moved[:, 2]
-    if spatial:
-        turns[:, :2] = moved[:, 4:]
-    arms[:, :2] = offsets
-    carried = transform.Rotation.from_rotvec(turns).apply(arms)
-    moved[:, :2] += carried[:, :2]
-    if spatial:
-        moved[:, 3] += carried[:, 2]
+    moved, (x, y) = poses[owner], offsets.T
+    cos, sin = np.cos(moved[:, 2]), np.sin(moved[:, 2])
+    moved[:, 0] += cos * x - sin * y
+    moved[:, 1] += sin * x + cos * y
     return moved
 
 
@@ -145,8 +138,6 @@ def carried_rates(rates: Array, owner: NDArray[np.int64], offsets: Array) -> Arr
     x, y = offsets.T
     moved[:, 0] -= moved[:, 2] * y
     moved[:, 1] += moved[:, 2] * x
-    if moved.shape[1] > PLANAR:
-        moved[:, 3] += moved[:, 4] * y - moved[:, 5] * x
     return moved
 
 

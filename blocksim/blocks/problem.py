@@ -327,14 +327,10 @@ class Problem(Shown, Generic[Blocks]):
         Returns
         -------
         (blocks, 3 or 6) float
-            In units of the mean block's weight, and of that times the size. Six columns in
-            space, and where poses of the plane have them: then z, and moments about x and y.
+            In units of the mean block's weight, and of that times the size.
         """
-        wide = self.assembly.columns if poses is None else poses.shape[1]
-        pull = self.assembly.weights_under(self.gravity)[:, :wide].copy()
-        if self.is_loaded:
-            pull[:, : self.assembly.columns] += self.loads(poses)
-        return pull
+        pull = self.assembly.weights_under(self.gravity)
+        return pull + self.loads(poses) if self.is_loaded else pull
 
     def loads(self, poses: Array | None = None) -> Array:
         """Sum dead and live loads on each block: `applied_forces` without gravity."""

@@ -139,10 +139,9 @@ class World(Protocol):
         ...
 
     def poses(self) -> Array:
-        """Return centres of mass x, y and rotations [rad], shape (blocks, 3).
+        """Return centres of mass x, y and rotations [rad], (blocks, 3).
 
-        In three dimensions shape (blocks, 6): then z, out of the plane, and the rotation
-        vector's x and y; its z is the rotation in the plane.
+        In space x, y, z and rotation vectors, (blocks, 6).
         """
         ...
 

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SPATIAL, Array, Assembly
@@ -23,8 +22,8 @@ ROD = 1e-4
 """Thickness of the rod in a corner [size]."""
 EDGE = 1e-2
 """The same, of one that stands on its edge [size]."""
-PLACES, TURNS = [0, 1, 3], [4, 5, 2]
-"""Columns of the poses of the plane that make a place, and a rotation vector."""
+IN_PLANE = [0, 1, 5]
+"""What is of the plane, of x, y, z and a rotation vector."""
 UNTURNED = (0.0, 0.0, 0.0, 1.0)
 """Quaternion of a body that is not turned."""
 LEAST_TURN = 1e-2
@@ -34,25 +33,24 @@ LEAST_TURN = 1e-2
 class Frame:
     """How motions of bodies are written.
 
-    `columns`: Of x, y, z and of a rotation vector among those of motions.
+    `columns`: Those that are told, of x, y, z and a rotation vector.
     `built`, (blocks, 4) or (4,): Quaternions with which bodies are built.
     """
 
     def __init__(
-        self, columns: Sequence[int] = (*PLACES, *TURNS), built: ArrayLike = UNTURNED
+        self, columns: Sequence[int], built: Array | Sequence[float] = UNTURNED
     ) -> None:
-        self._columns, self._built = list(columns), Rotation.from_quat(built)
+        self.columns, self._built = list(columns), Rotation.from_quat(built)
 
     def motions(self, linear: Array, angular: Array) -> Array:
         """Return velocities (blocks, 3) along and about the engine's axes as columns."""
-        found = np.zeros((len(linear), SPATIAL))
-        found[:, self._columns] = np.hstack([linear, angular])
-        return found
+        return np.hstack([linear, angular])[:, self.columns]
 
     def told(self, motion: Array) -> tuple[list[float], list[float]]:
-        """Return a motion in columns, (6,), as vectors along and about the engine's axes."""
-        found: list[float] = motion[self._columns].tolist()
-        return found[:3], found[3:]
+        """Return a motion in columns as vectors along and about the engine's axes."""
+        found = np.zeros(SPATIAL)
+        found[self.columns] = motion
+        return found[:3].tolist(), found[3:].tolist()
 
     def poses(self, places: Array, quaternions: Array) -> Array:
         """Return places (blocks, 3) and orientations x, y, z, w (blocks, 4) likewise."""

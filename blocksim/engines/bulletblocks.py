@@ -34,9 +34,9 @@ from functools import partial
 
 import numpy as np
 
-from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.problem import Problem
-from blocksim.engines.boxes import EDGE, TURNS, UNTURNED, Frame, edge, plate
+from blocksim.engines.boxes import EDGE, IN_PLANE, UNTURNED, Frame, edge, plate
 from blocksim.engines.bulletparts import Ends, Joints, Link, let_go, linked, met
 from blocksim.engines.bulletspace import SLOP, Space, State, friction_share
 from blocksim.engines.faces import LEDGE_SHARE, Side, reaching, sides_of
@@ -62,22 +62,18 @@ BESIDE = 1e-7
 class Planar(Polygons):
     """The blocks of a problem in the plane as bodies: the parts that `bulletmotion` moves."""
 
-    turns = TURNS
+    turns = (2,)
 
     def __init__(self, problem: Problem) -> None:
         super().__init__(problem)
-        self.frame = Frame()
+        self.frame = Frame(IN_PLANE)
         self.reach: Array = self.assembly.reach / self.assembly.size
         self.states = [self._at(index) for index in range(len(self.assembly.blocks))]
         self.breaking = MERGED
 
     def loads(self, poses: Array) -> Array | None:
-        """Return loads besides gravity, (blocks, 6); None where there are none."""
-        if not self.problem.is_loaded:
-            return None
-        found = np.zeros_like(poses)
-        found[:, :PLANAR] = self.problem.loads(poses[:, :PLANAR])
-        return found
+        """Return loads besides gravity, (blocks, 3); None where there are none."""
+        return self.problem.loads(poses) if self.problem.is_loaded else None
 
     def pressures(self, forces: Array) -> Array:
         """Return pressures at both ends of each joint, of forces (joints, 2, 2)."""
@@ -86,15 +82,16 @@ class Planar(Polygons):
         pressures[corner] = pressures[corner].sum(axis=1, keepdims=True)
         return pressures
 
-    def flatten(self, space: Space, bodies: list[int], poses: Array) -> None:
+    def flatten(self, space: Space, bodies: list[int]) -> None:
         """Put centres that have left the plane back into it, with no velocity out of it.
 
         Impacts kick blocks out of the plane, by 1e-3 of their velocity. What is put back loses
         its contacts, and sinks: so only what is off is.
         """
-        for index in np.flatnonzero(np.abs(poses[:, PLANAR]) > BESIDE):
-            (x, y, _), turn, (right, up, _), spin = space.state(bodies[index])
-            space.put(bodies[index], State((x, y, 0.0), turn, (right, up, 0.0), spin))
+        for body in bodies:
+            (x, y, z), turn, (right, up, _), spin = space.state(body)
+            if abs(z) > BESIDE:
+                space.put(body, State((x, y, 0.0), turn, (right, up, 0.0), spin))
 
     def linked(self, space: Space, reaches: Array | None = None) -> tuple[list[int], Joints]:
         """Create a body with links for each block, and one for the support.

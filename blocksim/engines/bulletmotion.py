@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from blocksim.blocks.assembly import SPATIAL, Array
+from blocksim.blocks.assembly import Array
 from blocksim.engines.base import Quality, Settings
 from blocksim.engines.boxes import unwound
 from blocksim.engines.bulletspace import SLOP, Space
@@ -66,7 +66,7 @@ class Moving:
         self._turned = np.zeros((count, len(parts.turns)))
         self._is_free = self._is_layered = self._is_rubble = False
         self._gains = np.zeros(count)
-        self._last, self._rate = 0.0, np.zeros((count, SPATIAL))
+        self._last, self._rate = 0.0, np.zeros((count, len(parts.frame.columns)))
         self._short, self._held = settings.step, 0
         # A finer step is finer in its parts, too.
         self._finer = STEP / settings.step
@@ -95,7 +95,7 @@ class Moving:
 
     def _turning(self, velocities: Array) -> Array:
         """Return how fast blocks turn, (blocks,)."""
-        return np.sqrt((velocities[:, self._parts.turns] ** 2).sum(axis=1))
+        return np.sqrt((velocities[:, list(self._parts.turns)] ** 2).sum(axis=1))
 
     def _link(self) -> None:
         """Build anew, of bodies with links, where blocks are."""
@@ -204,7 +204,7 @@ class Moving:
             self._step()
         self._rate = self._last_step() / step
         self._deepest = max(self._deepest, self._space.overlap())
-        self._parts.flatten(self._space, self._bodies, self.poses())
+        self._parts.flatten(self._space, self._bodies)
 
     def _last_step(self) -> Array:
         """Take a step, look at the energy, and return what velocities gain."""
@@ -223,9 +223,8 @@ class Moving:
         self._space.step()
 
     def poses(self) -> Array:
-        """Return places and rotations, shape (blocks, 6)."""
-        found = self._space.poses(self._bodies)
-        turns = self._parts.turns
+        """Return places and rotations, (blocks, 3 or 6)."""
+        found, turns = self._space.poses(self._bodies), list(self._parts.turns)
         found[:, turns] = self._turned = unwound(found[:, turns], self._turned)
         return found
 

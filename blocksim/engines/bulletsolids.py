@@ -36,12 +36,12 @@ class Spatial(Polyhedra):
     """The blocks of a problem in space as bodies; see `bulletmotion`."""
 
     breaking = BREAKING
+    turns = (3, 4, 5)
     can_be_layered = False
 
     def __init__(self, problem: Problem[SpatialAssembly]) -> None:
         super().__init__(problem)
-        self.turns = [3, 4, 5]
-        self.frame = Frame(columns=range(SPATIAL), built=self.quaternions)
+        self.frame = Frame(range(SPATIAL), self.quaternions)
         self.reach: Array = self.bodies.reach
         centres = self.bodies.built.centres.tolist()
         self.states = [
@@ -57,7 +57,7 @@ class Spatial(Polyhedra):
         """Return pressures of forces at the points of joints, (points, 3)."""
         return np.maximum(forces[:, 0], 0.0)
 
-    def flatten(self, space: Space, bodies: list[int], poses: Array) -> None:
+    def flatten(self, space: Space, bodies: list[int]) -> None:
         """Leave blocks where they are: there is no plane."""
 
     def layered(self, space: Space) -> tuple[list[int], Joints]:

@@ -134,7 +134,7 @@ class Space:
         self._client.setGravity(*gravity.tolist())
 
     def push(self, body: int, load: Array) -> None:
-        """Load a body in the next step, (6,) in columns of poses; Bullet forgets it after."""
+        """Load a body in the next step, in columns of poses; Bullet forgets it after."""
         place, _ = self._client.getBasePositionAndOrientation(body)
         force, torque = self.frame.told(load)
         self._client.applyExternalForce(body, -1, force, place, bullet.WORLD_FRAME)
@@ -276,12 +276,12 @@ class Space:
         self._client.resetBaseVelocity(body, NOTHING, NOTHING)
 
     def hasten(self, body: int, velocity: Array) -> None:
-        """Let a body go on with a velocity, (6,), in the columns of `poses`."""
+        """Let a body go on with a velocity, in the columns of `poses`."""
         shift, spin = self.frame.told(velocity)
         self._client.resetBaseVelocity(body, shift, spin)
 
     def poses(self, bodies: Sequence[int]) -> Array:
-        """Return places and rotations, shape (bodies, 6)."""
+        """Return places and rotations, (bodies, 3) in the plane, (bodies, 6) in space."""
         read = [self._client.getBasePositionAndOrientation(body) for body in bodies]
         places, quaternions = zip(*read, strict=True)
         return self.frame.poses(np.array(places), np.array(quaternions))

@@ -8,11 +8,9 @@ from functools import partial
 from typing import Generic, TypeVar
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
-from blocksim.blocks.assembly import PLANAR, SPATIAL, Array
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
-from blocksim.engines.boxes import TURNS
 
 Where = TypeVar("Where")
 """Where blocks are: poses, or `solid.bodies.Place`."""
@@ -23,41 +21,30 @@ FELL = 1e-9
 def energy(problem: Problem, poses: Array, velocities: Array) -> float:
     """Return kinetic and potential energy, in mean weights times the size.
 
-    `poses`, `velocities`, (blocks, 3 or 6): Of a world; its columns.
+    `poses`, `velocities`, (blocks, 3).
     """
-    return _kinetic(problem, poses, velocities) + _potential(problem, poses)
+    return _kinetic(problem, velocities) + _potential(problem, poses)
 
 
-def _kinetic(problem: Problem, poses: Array, velocities: Array) -> float:
-    if poses.shape[1] == PLANAR:
-        return float((problem.assembly.masses * velocities**2).sum() / 2)
-    masses = problem.assembly.spatial_masses
-    # Moments of inertia are about axes that turn with the blocks.
-    turned = Rotation.from_rotvec(poses[:, TURNS]).inv()
-    spin = turned.apply(velocities[:, TURNS])
-    moved = velocities.copy()
-    moved[:, TURNS] = spin
-    return float((masses * moved**2).sum() / 2)
+def _kinetic(problem: Problem, velocities: Array) -> float:
+    return float((problem.assembly.masses * velocities**2).sum() / 2)
 
 
 def _potential(problem: Problem, poses: Array) -> float:
     pull = problem.applied_forces(poses)
     potential = -float((pull[:, :2] * poses[:, :2]).sum())
-    if poses.shape[1] == SPATIAL:
-        potential -= float((pull[:, PLANAR] * poses[:, PLANAR]).sum())
     if not problem.forces_turn:
         return potential
     # A force at a point does what its moment does about a block turned by a right angle.
-    quarter = np.zeros(poses.shape[1])
-    quarter[2] = math.pi / 2
-    return potential + float(problem.applied_forces(poses + quarter)[:, 2].sum())
+    quarter = poses + np.array([0.0, 0.0, math.pi / 2])
+    return potential + float(problem.applied_forces(quarter)[:, 2].sum())
 
 
 class Balance(Generic[Where]):
     """How far the energy has risen above that at the release.
 
     `potential`, `kinetic`: Energies: of where blocks are, and of that and their velocities.
-    `poses`, (blocks, 3 or 6) float, or Place: Where blocks are at the release, as these
+    `poses`, (blocks, 3) float, or Place: Where blocks are at the release, as these
         functions are told it.
     """
 
@@ -74,7 +61,11 @@ class Balance(Generic[Where]):
     @staticmethod
     def of(problem: Problem, poses: Array) -> Balance[Array]:
         """Look at the energies of a problem of the plane, from poses at the release on."""
-        return Balance(partial(_potential, problem), partial(_kinetic, problem), poses)
+
+        def kinetic(_: Array, velocities: Array) -> float:
+            return _kinetic(problem, velocities)
+
+        return Balance(partial(_potential, problem), kinetic, poses)
 
     def look(self, poses: Where, before: Array, after: Array) -> None:
         """Take note of blocks at a place, with their velocities on the way to it and from it.

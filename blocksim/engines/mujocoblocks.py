@@ -104,11 +104,15 @@ class Planar(Polygons):
     def _bodies(self) -> tuple[Any, list[Any]]:
         """Return a model of bodies that move in the plane, without shapes, and the bodies."""
         assembly = self.assembly
-        size, spec = assembly.size, spec_of(self.problem.gravity, assembly.spatial_masses)
+        size, spec = assembly.size, spec_of(self.problem.gravity, assembly.masses)
         bodies: list[Any] = []
         for index, block in enumerate(assembly.blocks):
-            mass, _, inertia, _, *across = assembly.spatial_masses[index].tolist()
-            body = with_body(spec, mass, [*across, inertia], pos=[*(block.centre / size), 0.0])
+            mass, _, inertia = assembly.masses[index].tolist()
+            # It turns about z alone, but moments have to be those of a body.
+            across = inertia / 2 + mass * float(assembly.depths[index]) ** 2 / 12
+            body = with_body(
+                spec, mass, [across, across, inertia], pos=[*(block.centre / size), 0.0]
+            )
             slide, hinge = library.mjtJoint.mjJNT_SLIDE, library.mjtJoint.mjJNT_HINGE
             body.add_joint(type=slide, axis=[1.0, 0.0, 0.0])
             body.add_joint(type=slide, axis=[0.0, 1.0, 0.0])

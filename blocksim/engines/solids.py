@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from blocksim.blocks.assembly import PLANAR, Array, Assembly
+from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.engines.contact.geometry import Geometry
 from blocksim.engines.contact.neighbours import TIGHT, Neighbours
@@ -77,18 +77,17 @@ class Solids:
     def update(self, poses: Array) -> NDArray[np.int64]:
         """Look where blocks are, and return the joints that have ended since.
 
-        `poses`, (blocks, 3 or 6).
+        `poses`, (blocks, 3).
         """
-        planar = poses[:, :PLANAR]
         moved = poses.copy()
         moved[:, :2] -= self._start
-        moved[:, [2, *range(4, moved.shape[1])]] *= self._reach[:, None]
+        moved[:, 2] *= self._reach
         way = float(np.abs(moved).max())
         self.left = max(TIGHT, self._free) - way
         self.loose = self.loose or self.left < 0
         if not self.loose:
             return np.zeros(0, dtype=np.int64)
-        _, holds = self._geometry.touch(planar)
+        _, holds = self._geometry.touch(poses)
         ended = np.flatnonzero(self.holds & ~holds)
         self.holds &= holds
         return ended

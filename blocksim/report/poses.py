@@ -19,8 +19,8 @@ from blocksim.simulation.recording import Recording
 
 VERSION = 1
 """Version of the JSON's fields. It grows when one changes its meaning or goes."""
-COLUMNS = ("x_m", "y_m", "rotation_rad", "z_m", "rotation_x_rad", "rotation_y_rad")
-"""Names of the columns of poses. Recordings of the plane have the first three."""
+COLUMNS = ("x_m", "y_m", "rotation_rad")
+"""Names of the columns of poses in the plane."""
 IN_SPACE = ("x_m", "y_m", "z_m", "rotation_x_rad", "rotation_y_rad", "rotation_z_rad")
 """Names of the columns for blocks in space."""
 
@@ -131,8 +131,7 @@ def _side(
 def _poses(recording: Recording[Any]) -> dict[str, Any]:
     """Columns of the poses, each (frames, blocks)."""
     size = recording.assembly.size
-    in_space = recording.problem.in_space
-    columns = IN_SPACE if in_space else COLUMNS[: recording.poses.shape[2]]
+    columns = IN_SPACE if recording.problem.in_space else COLUMNS
     return {
         name: recording.poses[..., at] * (size if name.endswith("_m") else 1.0)
         for at, name in enumerate(columns)

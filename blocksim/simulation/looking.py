@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import PLANAR, Array
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import overlap_and_slip
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.parting import overlap_and_slip_in_space
@@ -61,7 +61,7 @@ class Looking:
             masses = assembly.weights / self._problem.unit_force
             moving = float(masses @ ((rates[:, :3] ** 2).sum(axis=1) + spin))
         else:
-            moving = float((assembly.masses * rates[:, :PLANAR] ** 2).sum())
+            moving = float((assembly.masses * rates**2).sum())
         return float((self._problem.applied_forces(built) * rates).sum()), moving
 
     def equilibrium(self) -> tuple[bool, Array | None]:

@@ -6,15 +6,16 @@ import hashlib
 import math
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, BinaryIO, Generic, Literal, cast
 
 import numpy as np
 
-from blocksim.blocks.assembly import SPATIAL, Array, Block, Blocks
+from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Block, Blocks
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.record import from_record, to_record
+from blocksim.blocks.space.extruded import extruded, lifted
 from blocksim.common.checks import infinite, is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, json_text, opened, write_whole
@@ -50,9 +51,8 @@ class Recording(Shown, Generic[Blocks]):
     times : (frames,) float
         In units of sqrt(size/g), from the release.
     poses : (frames, blocks, 3 or 6) float
-        Centres of mass x, y in units of the size and rotations [rad]; from engines in three
-        dimensions also z, out of the plane, and the rotation vector's x and y. In space:
-        centres of mass x, y, z, and rotation vectors since the release.
+        Centres of mass x, y in units of the size and rotations [rad]. In space: centres of mass
+        x, y, z, and rotation vectors since the release.
     quality : Quality
         How well contact and friction were kept.
     """
@@ -242,7 +242,24 @@ def read_recording(
         raise InputError("recording", where, "of blocks that stand on something")
     if not _moves(recording):
         raise InputError("recording", where, "of finite poses at times that grow")
-    return recording
+    return recording if poses.shape[-1] == assembly.columns else _of_its_space(recording)
+
+
+def _of_its_space(recording: Recording) -> Recording[Any]:
+    """Return an older recording of the plane, which told of motion out of it, as one of today.
+
+    Where gravity leaned out of the plane, it is of prisms in space.
+    """
+    asked, poses = recording.problem, recording.poses
+    if asked.is_planar:
+        return replace(recording, poses=poses[..., :PLANAR])
+    made = extruded(asked)
+    share = asked.assembly.size / made.assembly.size
+    in_space = lifted(poses[..., :PLANAR])
+    in_space[..., [1, 3, 5]] = poses[..., PLANAR:] * [-1.0, 1.0, 1.0]
+    in_space[..., :3] *= share
+    times = recording.times * math.sqrt(share)
+    return replace(cast("Any", recording), problem=made, times=times, poses=in_space)
 
 
 def _foreign(where: str) -> InputError:

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import PLANAR, Array, Blocks
+from blocksim.blocks.assembly import Array, Blocks
 from blocksim.engines.base import World
 from blocksim.engines.contact.geometry import Geometry
 from blocksim.simulation.recording import Recording
@@ -68,7 +68,7 @@ def _deepest(recording: Recording[Any]) -> float | None:
     if recording.problem.in_space:
         return told
     geometry, deepest = Geometry(recording.assembly), told or 0.0
-    for poses in recording.poses[..., :PLANAR]:
+    for poses in recording.poses:
         touch, holds = geometry.touch(poses)
         deepest = max(deepest, -float(touch.gap[holds].min(initial=0.0)))
     return deepest

@@ -21,7 +21,7 @@ from typing import Any, cast
 import numpy as np
 
 from blocksim.blocks.acting import with_push
-from blocksim.blocks.assembly import PLANAR, Array, Assembly
+from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Engine, TakesForces, TakesVelocities, World, trusted
@@ -319,7 +319,7 @@ def _zero(now: float, slope: float, bend: float) -> float:
 
 def _ended(assembly: Assembly, poses: Array) -> int:
     """Count the joints that are none any more."""
-    touch, holds = Geometry(assembly).touch(poses[:, :PLANAR])
+    touch, holds = Geometry(assembly).touch(poses)
     return int((~holds | (touch.gap.min(axis=1) > APART)).sum())
 
 

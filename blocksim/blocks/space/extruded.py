@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from blocksim.blocks.acting import Load
-from blocksim.blocks.assembly import PLANAR, SPATIAL, SUPPORT, Array, Assembly, Joint
+from blocksim.blocks.assembly import SPATIAL, SUPPORT, Array, Assembly, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.space.assembly import FaceJoint, SolidBlock, SpatialAssembly
 from blocksim.blocks.space.polyhedron import Polyhedron
@@ -93,14 +93,12 @@ def prism(polygon: Array, depth: float) -> Polyhedron:
 
 
 def lifted(poses: Array) -> Array:
-    """Return poses of the plane, (..., blocks, 3 or 6), as those of the prisms, (..., 6).
+    """Return poses of the plane, (..., blocks, 3), as those of the prisms, (..., 6).
 
     In units of the size: centres x, y, z, and rotation vectors.
     """
     found = np.zeros((*poses.shape[:-1], SPATIAL))
-    found[..., [0, 2, 4]] = poses[..., :PLANAR] * [1.0, 1.0, -1.0]
-    if poses.shape[-1] == SPATIAL:
-        found[..., [1, 3, 5]] = poses[..., PLANAR:] * [-1.0, 1.0, 1.0]
+    found[..., [0, 2, 4]] = poses * [1.0, 1.0, -1.0]
     return found
 
 
