@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
-from scipy.optimize import brentq
 
-from blocksim import Arch
-from blocksim.arch.limit.mechanism import mechanism
-from blocksim.arch.theory.equations import Value, shape
+Value = float | np.ndarray
 
 
 def lower_thrust(beta: Value, eta: Value) -> Value:
@@ -30,23 +25,9 @@ def upper_thrust(half_angle: Value, beta: Value, eta: Value) -> Value:
 
 def whole_thrust(half_angle: Value, eta: Value) -> Value:
     """Thrust with hinges at crown and shoulder extrados, h_2 (3)."""
-    return shape(half_angle) - 2 / (2 + eta)
+    return half_angle / np.tan(half_angle / 2) - 2 / (2 + eta)
 
 
 def tangency_thrust(beta: Value, eta: Value) -> Value:
     """Thrust whose line is tangent to the intrados at beta, h_e (4)."""
     return beta / np.tan(beta) - eta / (2 - eta)
-
-
-def least_thickness_by_program(
-    half_angle: float, mu: float, voussoirs: int, weight: str = "centreline"
-) -> float | None:
-    """Least thickness at which the program (16) has the value zero; None if above 2."""
-    arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
-
-    def missing(eta: float) -> float:
-        return mechanism(replace(arch, eta=eta), mu).extra_strength
-
-    if missing(2.0) > 0:
-        return None
-    return float(brentq(missing, 1e-9, 2.0, xtol=1e-15, rtol=1e-14))

@@ -153,12 +153,12 @@ def serve() -> None:
     """Run the commands that are asked for, line by line."""
     import importlib
 
-    from blocksim.view.mapshapes import map_shapes
+    from running import inside
 
     for name in LIBRARIES:
         importlib.import_module(name)
-    for weight in ("centreline", "sector"):
-        map_shapes(weight)
+    with tempfile.TemporaryDirectory() as folder:
+        inside("map", "--out", "map.html", cwd=Path(folder))
     gc.freeze()
     for line in sys.stdin:
         asked = json.loads(line)

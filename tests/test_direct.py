@@ -6,11 +6,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from arches import arch_at, problem_at
-from worlds import DIRECT, Blocks, ContactProblem, Simulation, joint_motion, observe, onset
+from worlds import (
+    DIRECT,
+    Blocks,
+    ContactProblem,
+    Simulation,
+    joint_motion,
+    moving_run,
+    observe,
+    onset,
+    trusted,
+)
 
 from blocksim import CircularArch, Problem, Verdict
-from blocksim.engines.base import trusted
-from blocksim.simulation.motion import moving_run
 
 CASES = [
     (90, 0.9, 27, "centreline"),

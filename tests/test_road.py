@@ -6,6 +6,7 @@ import json
 import math
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,8 +16,7 @@ from running import answered, inside
 from scipy.integrate import quad
 from structure_cases import case, scenes
 
-from blocksim import Arch, CircularArch, Problem, collapse, load_recording, structure_of
-from blocksim.blocks.road import on_road, with_road
+from blocksim import Problem, collapse, load_recording, structure_of
 
 HEAVY, FILL = 22_000.0, 18_000.0
 RADIUS, THICK, DEPTH, HEIGHT = 25 / 6 + 0.225, 0.45, 2.0, 0.5
@@ -27,11 +27,6 @@ OPTIONS = (
     *("--depth", "2", "--friction-angle", "35", "--unit-weight", "22"),
 )
 UNDER = (*OPTIONS, "--fill", "0.5", "--fill-unit-weight", "18")
-
-
-def structure_of_arch(arch: Arch, mu: float) -> Problem:
-    """An arch with supports drawn."""
-    return CircularArch.of(arch, friction=mu).but(on_supports=True).problem()
 
 
 def above(outer: float, half_angle: float, height: float) -> float:
@@ -74,32 +69,36 @@ def test_an_engine_falls_where_the_load_factor_says(share: float, code: int) -> 
     assert done.returncode == code
 
 
-def test_a_weight_on_a_joint_is_shared_by_both_sides() -> None:
-    even = structure_of_arch(Arch(half_angle=1.2, eta=0.2, voussoirs=8), 0.7)
-    loads = on_road(even.assembly, 10.0, 0.0, 0.0)
+def let_go(folder: Path, *options: str) -> Problem:
+    """What is simulated by command."""
+    run = folder / "run.npz"
+    done = inside("simulate", *options, "--seconds", "0.01", "--out", str(run))
+    assert done.returncode == 0, done.stderr
+    return load_recording(run).problem
+
+
+def test_a_weight_on_a_joint_is_shared_by_both_sides(tmp_path: Path) -> None:
+    arch = (
+        "--alpha",
+        "60",
+        "--eta",
+        "0.2",
+        "--mu",
+        "0.7",
+        "--voussoirs",
+        "8",
+        "--unit-weight",
+        "20",
+    )
+    loads = let_go(tmp_path, *arch, "--point-load", "0", "10").live
     assert [load.blocks for load in loads] == [(3,), (4,)]
-    assert [load.force[1] for load in loads] == [-5.0, -5.0]
-    (load,) = on_road(even.assembly, 10.0, 0.1, 0.1)
+    assert [load.force[1] for load in loads] == [-5000.0, -5000.0]
+    (load,) = let_go(tmp_path, *arch, "--point-load", "0.1", "10").live
     assert load.blocks == (4,)
     # On the chord of the extrados, from (0, 1.1) to the next joint.
-    end = 1.1 * np.array([math.sin(0.3), math.cos(0.3)])
+    end = 1.1 * np.array([math.sin(math.pi / 12), math.cos(math.pi / 12)])
     height = 1.1 + 0.1 / end[0] * (end[1] - 1.1)
     assert load.point == pytest.approx([0.1, height], abs=1e-12)
-
-
-def test_a_weight_stays_where_it_is_as_an_arch_grows_thinner() -> None:
-    """The ends of radial joints move along the road: another voussoir may come below it."""
-    thick = Arch(half_angle=1.2, eta=0.4, voussoirs=9)
-    built = with_road(structure_of_arch(thick, 0.7), [(0.45, 0.45, 5.0), (-0.2, 0.1, 3.0)])
-    thin = built.but(thickness=0.05)
-    assert thin.road == ((0.45, 0.45, 5.0), (-0.2, 0.1, 3.0))
-    for problem, outer in ((built, 1.2), (thin, 1.025)):
-        angle = math.asin(0.45 / outer)
-        place = int(np.searchsorted(thick.joint_angles, angle)) - 1
-        assert problem.live[0].blocks == (place,)
-        assert problem.live[0].point[0] == 0.45  # type: ignore[index]
-        assert sum(load.force[1] for load in problem.live) == pytest.approx(-8, rel=1e-14)
-    assert built.live[0].blocks != thin.live[0].blocks
 
 
 def test_loads_in_a_file_of_blocks_stand_where_its_own_x_says(tmp_path: Path) -> None:
@@ -179,6 +178,14 @@ def test_a_narrow_patch_is_a_point_load(name: str) -> None:
     assert found == pytest.approx(case(name)["expected"]["value"], rel=1e-9)
 
 
+@pytest.mark.parametrize("on", [{"block": "5"}, {"patch": [-0.1, 0.1]}])
+def test_an_arch_in_radii_is_loaded_by_name_and_by_place(on: dict[str, Any]) -> None:
+    table = {**ARCH, "half_angle_deg": 60, "live": [{**on, "force": [0, -2]}]}
+    (load,) = structure_of(table).live
+    assert load.blocks == (4,)
+    assert load.force == pytest.approx([0, -2])
+
+
 @settings(deadline=None, max_examples=12)
 @given(st.floats(-0.9, 0.8), st.floats(0.05, 0.9), st.floats(-2, 2), st.floats(-5, -0.1))
 def test_a_patch_comes_to_its_force_at_its_middle(
@@ -214,10 +221,17 @@ def test_what_lies_uppermost_bears_it_and_supports_bear_their_own() -> None:
     assert borne == pytest.approx([-1.5, -0.5])
 
 
+FULL = "--fill", "0.5", "--fill-unit-weight", "20", "--fill-friction-angle", "30"
 AXLE = "--point-load", "-1.35", "20"
+SOIL = (
+    *("--fill-layer", "0.1", "24", "--backing", "0.5", "23"),
+    *("--fill-pressure", "0.3,0.4"),
+)
 
 
-@pytest.mark.parametrize("more", [("--fill", "0.5"), ("--fill", "0.5", *AXLE), AXLE])
+@pytest.mark.parametrize(
+    "more", [("--fill", "0.5"), ("--fill", "0.5", *AXLE), AXLE, (*FULL, *SOIL, *AXLE)]
+)
 def test_the_line_that_was_measured_stays_under_a_road(more: tuple[str, ...]) -> None:
     """The least thickness under fill and loads is where a check of that thickness changes."""
     line = "--span", "8", "--rise", "2.5", "--mu", "0.6", *more

@@ -13,10 +13,6 @@ from running import answered, inside
 from scipy.integrate import quad
 from test_crossing import is_as_bad_as_said
 
-from blocksim import CircularArch
-from blocksim.blocks.road import with_fill, with_soil
-from blocksim.blocks.soil import Soil
-
 BRIDGE = Bridge(span=8.0, rise=3.0, thick=0.45, count=30, fill=0.5, heavy_fill=18.0)
 """A joint at the crown: no voussoir has soil on both of its sides."""
 ANGLE = 30.0
@@ -144,24 +140,9 @@ def test_layers_backing_and_regions_weigh_what_they_are() -> None:
     layered = limit("--backing", "1", "23", "--fill-layer", "0.2", "24")
     assert layered == pytest.approx(BRIDGE.factor(LIVE, dead), rel=2e-4)
     # A region that ends at a joint is another unit weight of all above the voussoirs there.
-    half = CircularArch(span=8.0, rise=3.0, thickness=0.45, voussoirs=30, friction=0.6)
-    filled = with_fill(half.but(density=2e4).problem(), 0.5, 0.9)
-    soil = Soil(unit_weight=18e3, regions=((0.0, 100.0, 15e3),))
-    more = with_soil(filled, soil)
-    chords = chorded(BRIDGE, lambda x, _: -3.0 if x > 0 else 0.0)
-    loads = more.loads()[:, 1] - filled.loads()[:, 1]
-    assert loads * more.unit_force / 1e3 == pytest.approx(chords[:, 1], rel=1e-6, abs=1e-9)
-
-
-def test_soil_stays_on_an_arch_of_another_thickness() -> None:
-    arch = CircularArch(span=8.0, rise=3.0, thickness=0.45, friction=0.6, density=2e4)
-    soil = Soil(
-        unit_weight=2e4, layers=((0.1, 24e3),), backing=(0.5, 23e3), pressure=(0.3, 0.4)
-    )
-    changed = with_soil(with_fill(arch.problem(), 0.5, 1.0), soil).but(thickness=0.3)
-    made = with_soil(with_fill(arch.but(thickness=0.3).problem(), 0.5, 1.0), soil)
-    assert len(changed.dead) == len(made.dead)
-    assert changed.applied_forces() == pytest.approx(made.applied_forces(), rel=1e-12)
+    right = chorded(BRIDGE, lambda x, _: -3.0 if x > 0 else 0.0)
+    found = limit("--fill-region", "0", "100", "15")
+    assert found == pytest.approx(BRIDGE.factor(LIVE, BRIDGE.dead() + right), rel=1e-6)
 
 
 WEDGE: dict[str, Any] = {

@@ -14,10 +14,12 @@ from blocksim.engines import get_engine as get_engine
 from blocksim.engines.base import Engine as Engine
 from blocksim.engines.base import Quality as Quality
 from blocksim.engines.base import Settings as Settings
+from blocksim.engines.base import trusted as trusted
 from blocksim.engines.contact import ContactProblem as ContactProblem
 from blocksim.engines.direct import Blocks as Blocks
 from blocksim.engines.ground import ground_level as ground_level
 from blocksim.limit import least_motion as least_motion
+from blocksim.simulation.motion import moving_run as moving_run
 from blocksim.simulation.observation import hold as hold
 from blocksim.simulation.observation import observe as observe
 from blocksim.simulation.onset import onset as onset

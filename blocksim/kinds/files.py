@@ -277,7 +277,11 @@ def problem_of(kind: Maker, around: Around) -> Problem:
     Returns: Dead loads begin with the weight of fill.
     """
     built = kind.built if around.size is None else kind.built_of(around.size)
-    problem = structure.problem_of(around, built.bodies, built.assembly, built.notes)
+    bodies = built.bodies
+    if not bodies and (around.dead or around.live):
+        # An arch of radius 1 is built of no bodies, but loads tell which of them they are on.
+        bodies = kind.made(kind.unit_weight).bodies
+    problem = structure.problem_of(around, bodies, built.assembly, built.notes)
     return replace(
         problem,
         dead=(*built.fills, *problem.dead),

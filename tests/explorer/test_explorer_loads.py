@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 from windows import settle, wait_until
 
-from blocksim import CircularArch, Problem, collapse, equilibrium
-from blocksim.blocks.road import with_road
+from blocksim import Problem, collapse, equilibrium, structure_of
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 TOLERANCE = 1e-6
+NARROW = 1e-9
+"""Half the width of a load at a point."""
 ANALYSE = """(all) => all.map(({ alpha, mu, voussoirs, ...rest }) => {
   const state = { halfAngle: alpha * Math.PI / 180, mu: mu === "inf" ? Infinity : mu, ...rest };
   const { rest: forces, bears, falls, place } = loaded.analyse(state, voussoirs);
@@ -39,14 +40,16 @@ def random_arch(random: np.random.Generator) -> dict[str, Any]:
 
 def problem_of(given: dict[str, Any], place: float) -> Problem:
     """The same arch, with a load at a place over the radius."""
-    weight = "curved" if given["weight"] == "sector" else "centreline"
-    arch = CircularArch(
-        half_angle_deg=given["alpha"], eta=given["eta"], voussoirs=given["voussoirs"],
-        weight=weight, friction=float(given["mu"]), fill=given["fill"] or None,
-    )  # fmt: skip
-    problem = arch.problem()
-    heavy = float(weights_of(problem).sum())
-    return with_road(problem, [(place, place, heavy)]).with_load(given["load"]["share"])
+    arch = {
+        "kind": "circular-arch",
+        "weight": "curved" if given["weight"] == "sector" else "centreline",
+        "half_angle_deg": given["alpha"],
+        **{each: given[each] for each in ("eta", "voussoirs", "fill") if given[each]},
+        "friction": float(given["mu"]),
+    }
+    heavy = float(weights_of(structure_of(arch)).sum())
+    load = {"patch": [place - NARROW, place + NARROW], "force": [0.0, -heavy]}
+    return structure_of({**arch, "live": [load]}).with_load(given["load"]["share"])
 
 
 def weights_of(problem: Problem) -> np.ndarray:

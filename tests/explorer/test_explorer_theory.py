@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import pytest
-from derivations import least_thickness_by_program
 
 from blocksim import Arch, Mode
 from blocksim.arch import limit, theory
@@ -158,7 +157,7 @@ def test_share_against_limit_analysis(page: playwright.Page) -> None:
     for (half_angle, friction, ratio), balance in zip(rows.tolist(), found, strict=True):
         for change, stands in ((0.99, False), (1.01, True)):
             share = change * balance["share"]
-            built = least_thickness_by_program(half_angle, share * friction, 120)
+            built = limit.least_thickness(half_angle, share * friction, 120).eta
             assert (built is not None and built <= share * ratio) == stands
 
 
