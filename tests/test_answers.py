@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import runpy
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,14 @@ from running import answered, inside
 from blocksim import Arch, CircularArch, JointState, Mode, Verdict, bracket, check, simulate
 
 DOCS = Path(__file__).parent.parent / "docs"
+GLOSSARY = (DOCS / "glossary.md").read_text(encoding="utf-8")
+OF_THE_ANSWER = {
+    "version", "method", "problem", "title", "runs", "undecided", "confirmed", "splits", "tol",
+    "simulated_s", "state_hash", "wall_s", "over", "unit", "low", "high", "limit", "stands",
+    "events", "intervals", "falls", "proved", "evidence", "test", "found", "arch", "x", "y",
+    "rotation", "block", "angle_deg", "what", "value",
+}  # fmt: skip
+"""What tells of the asking, not of the structure; coordinates."""
 PLACE = DOCS / "schema" / "answers.json"
 SCHEMA = json.loads(PLACE.read_text(encoding="utf-8"))
 TYPES: dict[str, tuple[type, ...]] = {
@@ -38,7 +47,7 @@ CHECKS = (
     f"{ARCH} --lean 3 --method pybullet --voussoirs 5",
     f"{ARCH} --tilt 20",
     f"{ARCH} --fill 0.3 --point-load 0.2 1",
-    "pointed-arch --mu 0.7 --fill 0.3",
+    "portal --mu 0.6 --unit-weight 20 --fill 0.4 --point-load 0.3 5",
     "pointed-arch --mu 0.7 --tilt 4",
     "oppenheim_7 --load 0.4 --method direct",
     f"column --mu 0.7 {PULSE}",
@@ -83,23 +92,38 @@ def wrong(value: Any, schema: dict[str, Any], where: str = "$") -> list[str]:
     return keys + [each for k in both for each in wrong(value[k], known[k], f"{where}.{k}")]
 
 
+def told(key: str) -> bool:
+    """Whether a key stands in the last column of the glossary, `...` for ends of a bracket."""
+    ends = re.sub(r"_(low|high|limit|theory)(?=_|$)", "_...", key)
+    return f"`{key}`" in GLOSSARY or f"`{ends}`" in GLOSSARY
+
+
+def keys(record: Any) -> set[str]:
+    """All keys of a record, those of its parts included."""
+    if isinstance(record, list):
+        return set().union(*(keys(each) for each in record)) if record else set()
+    if not isinstance(record, dict):
+        return set()
+    return set(record) | keys(list(record.values()))
+
+
 def test_the_published_schema_is_that_of_the_code() -> None:
     assert runpy.run_path(str(DOCS / "schema.py"))["text"]() == PLACE.read_text("utf-8")
 
 
 def test_what_is_not_as_the_schema_says_is_seen() -> None:
-    told = answered("check", *ARCH.split())
+    answer = answered("check", *ARCH.split())
     check = SCHEMA["$defs"]["Check"]
-    assert wrong(told, check) == []
-    joint = {**told["joints"][0], "ends": [["left", 0.0]]}
+    assert wrong(answer, check) == []
+    joint = {**answer["joints"][0], "ends": [["left", 0.0]]}
     for change in (
         {"verdict": "falls"},
         {"wall_s": None},
         {"more": 1},
         {"joints": [joint]},
-        {"arch": {**told["arch"], "eta": True}},
+        {"arch": {**answer["arch"], "eta": True}},
     ):
-        assert len(wrong({**told, **change}, check)) == 1
+        assert len(wrong({**answer, **change}, check)) == 1
 
 
 @pytest.mark.parametrize(
@@ -109,14 +133,34 @@ def test_what_is_not_as_the_schema_says_is_seen() -> None:
 def test_answers_of_all_subjects_have_the_same_keys(command: str, asked: str) -> None:
     done = inside(command, *asked.split(), "--json")
     assert done.returncode in {0, 1, 3}, done.stderr
-    told = json.loads(done.stdout, parse_constant=pytest.fail)
-    assert wrong(told, SCHEMA["$defs"][command.capitalize()]) == []
-    assert [each["found"] for each in told["evidence"]]
+    record = json.loads(done.stdout, parse_constant=pytest.fail)
+    assert wrong(record, SCHEMA["$defs"][command.capitalize()]) == []
+    assert [each["found"] for each in record["evidence"]]
     # What is told of a symmetric circular arch is told of it under its own weight alone.
     besides = {"--tilt", "--fill", "--over", "--lean"}
-    assert (told["arch"] is not None) == (
+    assert (record["arch"] is not None) == (
         asked.startswith("--") and not besides & {*asked.split()}
     )
+    # Every quantity is a word of the glossary, but for those of a motion of the ground.
+    if "--shake" not in asked:
+        assert [key for key in keys(record) - OF_THE_ANSWER if not told(key)] == []
+
+
+def test_there_are_the_words_of_an_engineer() -> None:
+    rows = re.findall(r"^\| ([^|]+?) \|", GLOSSARY, flags=re.MULTILINE)
+    words = [word for word in rows if word not in {"word", "---"}]
+    assert len(words) == len(set(words)) >= 33
+
+
+def test_the_sketch_has_the_words_of_what_is_built() -> None:
+    drawn = (DOCS / "sketch.svg").read_text(encoding="utf-8")
+    shown = [" ".join(text.split()) for text in re.findall(r">([^<>]+)</text>", drawn)]
+    for word in (
+        "crown", "extrados", "intrados", "centreline", "voussoir", "joint", "springing",
+        "support", "span", "rise", "thickness t", "radius r", "half-angle alpha",
+        "line of thrust",
+    ):  # fmt: skip
+        assert shown.count(word) == 1, word
 
 
 @given(
