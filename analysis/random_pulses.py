@@ -14,10 +14,12 @@ import time
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from analysis.command import run
+from analysis.known_motions import blocks, box
 from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
 from blocksim import Problem, structure_of
@@ -42,29 +44,22 @@ LONGEST = 60.0
 
 def structure(name: str) -> tuple[Problem, float]:
     """Return a structure, and the acceleration from which on it moves [g], about."""
-    floor = {"id": 0, "vertices": [[-30, -1], [30, -1], [30, 0], [-30, 0]], "fixed": True}
 
-    def of(mu: float, *corners: list[list[float]]) -> Problem:
-        made = [{"id": at, "vertices": each} for at, each in enumerate(corners, 1)]
-        return structure_of({"friction": mu, "blocks": [floor, *made]})
-
-    def drums(
-        count: int, width: float, height: float, at: float = 0.0
-    ) -> list[list[list[float]]]:
+    def drums(count: int, width: float, height: float, at: float = 0.0) -> list[Any]:
         return [box(at, height * row, width, height) for row in range(count)]
 
     made: dict[str, tuple[Problem, float]] = {
-        "block 1 x 4": (of(2.0, box(0, 0, 1, 4)), 0.25),
-        "block 1 x 2": (of(1.0, box(0, 0, 1, 2)), 0.5),
-        "flat block that slides": (of(0.3, box(0, 0, 2, 1)), 0.3),
-        "two drums": (of(0.7, *drums(2, 1, 2)), 0.25),
-        "five drums": (of(0.7, *drums(5, 1, 0.8)), 0.25),
-        "frame": (of(0.7, box(0, 0, 1, 4), box(5, 0, 1, 4), box(0, 4, 6, 1)), 0.25),
+        "block 1 x 4": (blocks(2.0, box(0, 0, 1, 4)), 0.25),
+        "block 1 x 2": (blocks(1.0, box(0, 0, 1, 2)), 0.5),
+        "flat block that slides": (blocks(0.3, box(0, 0, 2, 1)), 0.3),
+        "two drums": (blocks(0.7, *drums(2, 1, 2)), 0.25),
+        "five drums": (blocks(0.7, *drums(5, 1, 0.8)), 0.25),
+        "frame": (blocks(0.7, box(0, 0, 1, 4), box(5, 0, 1, 4), box(0, 4, 6, 1)), 0.25),
         "frame of slender legs": (
-            of(0.7, box(0, 0, 0.5, 4), box(3, 0, 0.5, 4), box(0, 4, 3.5, 1)),
+            blocks(0.7, box(0, 0, 0.5, 4), box(3, 0, 0.5, 4), box(0, 4, 3.5, 1)),
             0.125,
         ),
-        "two towers of blocks": (of(0.6, *drums(3, 1, 1), *drums(2, 0.8, 1.2, 1.5)), 0.33),
+        "two towers of blocks": (blocks(0.6, *drums(3, 1, 1), *drums(2, 0.8, 1.2, 1.5)), 0.33),
         "arch of seven voussoirs": (
             structure_of(
                 {
@@ -80,7 +75,7 @@ def structure(name: str) -> tuple[Problem, float]:
             0.3705,
         ),
         "wall of bricks": (
-            of(
+            blocks(
                 0.6,
                 *(
                     box(x, 0.5 * row, 1, 0.5)
@@ -92,11 +87,6 @@ def structure(name: str) -> tuple[Problem, float]:
         ),
     }
     return made[name]
-
-
-def box(x: float, y: float, width: float, height: float) -> list[list[float]]:
-    """Corners of a rectangle, from its lower left one."""
-    return [[x, y], [x + width, y], [x + width, y + height], [x, y + height]]
 
 
 def shaking(draw: np.random.Generator, least: float) -> Shaking:

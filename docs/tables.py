@@ -14,8 +14,10 @@ from pathlib import Path
 from typing import Any, cast
 
 import click
+import numpy as np
 from format_tables import of_format
 from markdown_table import table
+from quotes import columns
 from validation_tables import of_validation
 
 from blocksim.cli import app
@@ -194,17 +196,43 @@ def _right(groups: dict[str, Any], *, in_space: bool) -> str:
 
 def _convergence(_: str) -> str:
     """Errors of motion over the step, and the order from the second step to the fourth."""
-    with (ROWS / "convergence.csv").open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    steps = list(dict.fromkeys(row["step"] for row in rows))
+    rows = columns("convergence")
+    steps = dict.fromkeys(rows["step"].tolist())
     cells = list[list[str]]()
-    for motion in dict.fromkeys(row["motion"] for row in rows):
-        errors = [float(row["error"]) for row in rows if row["motion"] == motion]
+    for motion in dict.fromkeys(rows["motion"].tolist()):
+        errors = rows["error"][rows["motion"] == motion].tolist()
         exact = max(errors) < 1e-12
         order = math.log2(errors[1] / errors[3]) / 2
         said = ["none" if exact else f"{100 * error:.1g} %" for error in errors]
         cells.append([motion, *said, "exact" if exact else f"{order:.1f}"])
     return table(["motion", *(f"step {step}" for step in steps), "order"], cells)
+
+
+def _engines_converge(_: str) -> str:
+    """Errors of motion by each engine at its usual step, and the order about it."""
+    rows = columns("convergence_engines")
+    of = [*zip(rows["in_space"], rows["engine"], rows["motion"], strict=True)]
+    asked = sorted(dict.fromkeys(each[:2] for each in of), key=lambda each: each[0])
+    cells = list[list[str]]()
+    for motion in dict.fromkeys(rows["motion"]):
+        found = [
+            rows["error"][[each == (*engine, motion) for each in of]].reshape(-1, 3)
+            for engine in asked
+        ]
+        cells.append([motion, *(_error_and_order(errors) for errors in found)])
+    heads = [f"{name}{', space' * (space == 'True')}" for space, name in asked]
+    return table(["motion", *heads], cells)
+
+
+def _error_and_order(errors: np.ndarray) -> str:
+    """Say both of motions, (motions, steps), begun at several places: by root mean squares."""
+    if not len(errors):
+        return "-"
+    coarse, usual, fine = np.sqrt((errors**2).mean(axis=0)).tolist()
+    if max(coarse, usual, fine) < 1e-10:
+        return "exact"
+    order = math.log2(coarse / fine) / 2
+    return f"{100 * usual:.1g} % ({f'{order:.1f}' if order > 0.5 else 'no order'})"
 
 
 TABLES: dict[str, Callable[[str], str]] = {
@@ -215,6 +243,7 @@ TABLES: dict[str, Callable[[str], str]] = {
     "commands": _commands,
     "validated": of_validation,
     "convergence": _convergence,
+    "motions": _engines_converge,
     "example": _example,
     "suite": _suite,
 }

@@ -17,8 +17,7 @@ from rocking import G, block, on_pulse, on_record, rocks
 from scipy.integrate import solve_ivp
 from worlds import DIRECT, Blocks, Simulation
 
-from analysis import convergence, housner, oppenheim, random_pulses
-from analysis.convergence import world
+from analysis import housner, known_motions, oppenheim, random_pulses
 from analysis.rows import FIGURES, read_kept
 from analysis.shaking import ARCH
 from blocksim import (
@@ -97,19 +96,42 @@ def test_a_record_rocks_a_block_as_far_as_housner_says() -> None:
 @pytest.mark.parametrize(
     "motion",
     [
-        convergence.stopped(),
-        pytest.param(convergence.rocking(3), marks=pytest.mark.long),
-        convergence.hinged(),
-        convergence.toppling(),
-        convergence.framed(1),
+        known_motions.stopped(),
+        pytest.param(known_motions.rocking(3), marks=pytest.mark.long),
+        known_motions.hinged(),
+        known_motions.toppling(),
+        pytest.param(known_motions.framed(1), marks=pytest.mark.long),
     ],
     ids=lambda motion: motion.name,
 )
-def test_errors_fall_as_the_step_squared(motion: convergence.Motion) -> None:
+def test_errors_fall_as_the_step_squared(motion: known_motions.Motion) -> None:
     """Closed forms, and equations of motion integrated from event to event."""
     coarse, fine = (abs(motion.seen(step) / motion.truth - 1) for step in (0.05, 0.0125))
     assert coarse < 5e-4
     assert fine < coarse / 5
+
+
+@pytest.mark.parametrize(
+    ("motion", "engine", "in_space", "error"),
+    [
+        (known_motions.falling(), "direct", True, 1e-9),
+        (known_motions.falling(), "pymunk", False, 1e-9),
+        (known_motions.falling(), "pybullet", False, 1e-9),
+        (known_motions.falling(), "pybullet", True, 1e-9),
+        (known_motions.falling(), "mujoco", False, 5e-4),
+        (known_motions.falling(), "mujoco", True, 5e-4),
+        (known_motions.thrown(), "pymunk", False, 1e-9),
+        (known_motions.stopped(), "pymunk", False, 1e-6),
+        (known_motions.sliding(), "pymunk", False, 1e-9),
+        (known_motions.rocking(1), "direct", True, 2e-3),
+    ],
+)
+def test_every_engine_begins_on_time_and_hits_when_it_does(
+    motion: known_motions.Motion, engine: str, in_space: bool, error: float
+) -> None:
+    """Half a step too early or too late, fall and slide are off by a hundredth."""
+    _, step = known_motions.world(motion.problem, engine, in_space=in_space)
+    assert motion.seen(step, engine, in_space=in_space) == pytest.approx(motion.truth, error)
 
 
 def test_a_block_topples_past_half_a_right_angle() -> None:
@@ -377,7 +399,8 @@ def test_an_impact_of_the_arch_loses_as_little_as_contacts_allow(mu: float) -> N
     start = -0.05 * np.stack(
         [speed.real * each, speed.imag * each, spin * problem.seconds], axis=1
     )
-    made = world(problem, 1e-5, start)
+    made = Blocks(problem, replace(DIRECT.rule(problem.assembly), step=1e-5))
+    made.push(start)
     made.advance(1)
     masses = problem.assembly.masses
     left = (masses * made.velocities**2).sum() / (masses * start**2).sum()

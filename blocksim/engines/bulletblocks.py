@@ -109,12 +109,13 @@ class Planar(Polygons):
         """Whether blocks can be bodies without links.
 
         Such a body has one friction, and its boxes cannot be told whom to touch. So they lie
-        in layers: in the plane it does not matter where across it a joint is.
+        in layers: in the plane it does not matter where across it a joint is. Each has one.
         """
         problem, joints = self.problem, self.assembly.joint_arrays
+        free = set(range(len(self.assembly.blocks))) - {*joints.before, *joints.after}
         between = (joints.before != SUPPORT) & (joints.after != SUPPORT)
         is_one = not (problem.friction[between] != problem.mu).any()
-        return is_one and problem.mu > 0
+        return is_one and problem.mu > 0 and not free
 
     def layered(self, space: Space) -> tuple[list[int], Joints]:
         """Build anew, of bodies without links, and those of the support one for each joint."""

@@ -112,6 +112,11 @@ class _World:
 
     def advance(self, steps: int) -> None:
         """Let the blocks move, in parts of a step once they may meet."""
+        if self._starts.any():
+            # Its velocities are those half a step ahead.
+            ahead = self._starts * self._settings.step / 2
+            self._space.set_velocities(self._space.velocities() + ahead)
+            self._starts = np.zeros_like(self._starts)
         for left in range(steps, 0, -1):
             if self._space.is_solid:
                 self._space.part()
@@ -208,9 +213,16 @@ class _World:
 
     def push(self, velocities: Array) -> None:
         """Set the velocities, shape (blocks, 3)."""
+        space, part = self._space, self._settings.step / SHAKEN_PARTS
+        poses = space.poses()
+        space.set_velocities(velocities)
+        self._go(part, self._settings.sweeps)
+        gained = space.velocities() - velocities
+        space.put(poses)
+        sudden = np.abs(gained).max(axis=1, keepdims=True) > IMPACT * part
         # Its velocities are those half a step ahead.
-        ahead = self._starts * self._settings.step / SHAKEN_PARTS / 2
-        self._space.set_velocities(velocities + ahead)
+        space.set_velocities(velocities + np.where(sudden, 0.0, gained) / 2)
+        self._starts, self._time = np.zeros_like(velocities), 0.0
 
     def poses(self) -> Array:
         """Return centres of mass and rotations."""

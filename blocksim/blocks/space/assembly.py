@@ -143,6 +143,13 @@ class SpatialAssembly:
         sides = [(each.before, each.after) for each in self.joints]
         return np.array(sides, dtype=np.int64).reshape(-1, 2).T
 
+    @cached_property
+    def points(self) -> Array:
+        """Points of all joints, one joint after the other [m], (points, 3)."""
+        return frozen(
+            np.concatenate([np.zeros((0, 3)), *(each.points for each in self.joints)]), (-1, 3)
+        )
+
     @property
     def joint_angles(self) -> Array:
         """Directions of the joints from a crown, (joints,): nan, as there is none."""

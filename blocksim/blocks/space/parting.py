@@ -16,12 +16,11 @@ def parted(assembly: SpatialAssembly, poses: Array) -> tuple[Array, Array]:
         were built.
     """
     joints, size = assembly.joints, assembly.size
-    count = [len(each.points) for each in joints]
-    points = np.concatenate([each.points for each in joints]) / size
-    normals = np.repeat([each.normal for each in joints], count, axis=0)
+    joint = np.repeat(np.arange(len(joints)), [len(each.points) for each in joints])
+    points = assembly.points / size
+    normals = np.array([each.normal for each in joints]).reshape(-1, 3)[joint]
     way = np.zeros_like(points)
-    for side, sign in (("before", -1.0), ("after", 1.0)):
-        block = np.repeat([getattr(each, side) for each in joints], count)
+    for block, sign in zip(assembly.sides[:, joint], (-1.0, 1.0), strict=True):
         on = block != SUPPORT
         own, at = points[on], block[on]
         centre = assembly.centres[at] / size
@@ -38,7 +37,7 @@ def overlap_and_slip_in_space(assembly: SpatialAssembly, poses: Array) -> tuple[
     Both are shares of the largest motion of a point.
     """
     gap, slip = parted(assembly, poses)
-    moved = max(float(np.abs(gap).max()), float(slip.max()))
+    moved = max(float(np.abs(gap).max(initial=0.0)), float(slip.max(initial=0.0)))
     if not moved > 0:
         return 0.0, 0.0
     slides = float(np.where(gap < slip, slip, 0.0).max())

@@ -68,7 +68,7 @@ class JointPoints:
         assembly = self.problem.assembly
         if not assembly.joints:
             return sparse.csc_matrix((6 * len(assembly.blocks), 0))
-        points = np.concatenate([each.points for each in assembly.joints])
+        points = assembly.points
         axes = self.axes[self.joint]
         rows: list[Any] = []
         columns: list[Any] = []

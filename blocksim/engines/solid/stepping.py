@@ -3,7 +3,8 @@
 Where nothing closes a step is of second order (Moreau and Jean, theta = 1/2): forces are those
 of its middle, contact and friction hold for the velocities at its end, and blocks go on by the
 mean of both. A step in which something closes is of first order: what is open may close, but
-not pass. What overlaps all the same is pushed apart, which changes no velocity.
+not pass. It is short unless impacts crowd. What overlaps all the same is pushed apart, which
+changes no velocity.
 """
 
 from __future__ import annotations
@@ -39,6 +40,8 @@ BRIEFLY = 1000
 """Most turns a step is looked for in which nothing closes: often there is none."""
 HALVINGS = 5
 """How often a step that is not solved is halved."""
+NEARER, QUIET = 6, 4
+"""How often a step is halved to come near to an impact, if so many steps before had none."""
 SHUT, PRESSED = 1e-6, 1e-4
 """Gap up to which a contact that moves slowly is closed, and one that pressed [size]."""
 SLOWLY = 1e-4
@@ -89,6 +92,7 @@ class SolidBlocks:
         self._body = body_of(self.bodies.hulls)
         self._borne = Borne.nothing(self._points(self._place, 0.0)[0])
         self._residual = self._penetration = 0.0
+        self._quiet = QUIET
         self._balance = Balance(
             bodies.potential, lambda _, moved: bodies.kinetic(moved), self._place
         )
@@ -127,7 +131,7 @@ class SolidBlocks:
         """Begin a motion with the forces at the points of joints, (points, 3)."""
         contacts, assembly = self._contacts, self.bodies.problem.assembly
         points, _ = self._points(self._place, 0.0)
-        places = np.concatenate([each.points for each in assembly.joints]) / assembly.size
+        places = assembly.points / assembly.size
         pushes = np.einsum("pi,pij->pj", forces, contacts.axes[contacts.joint])
         after = np.array([sides_of(each)[1] for each in assembly.joints])[contacts.joint]
         self._borne = Borne.nothing(points)
@@ -143,14 +147,19 @@ class SolidBlocks:
 
     def _move(self, step: float) -> None:
         """Go on for a time."""
-        left, halvings = step, 0
+        left, halvings, nearer = step, 0, 0
+        nearest = NEARER if self._quiet >= QUIET else 0
+        quiet = self._quiet + 1
         while left > 1e-9 * step and math.isfinite(self._residual):
-            part = min(left, step / 2**halvings)
+            part = min(left, step / 2 ** (halvings + nearer))
             before = vars(self).copy()
             worst, self._residual = self._residual, 0.0
-            deep = 0.0
-            if not self._smooth(part):
+            deep, closes = 0.0, not self._smooth(part)
+            if closes:
                 vars(self).update(before)
+                if nearer < nearest:
+                    nearer += 1
+                    continue
                 self._residual = 0.0
                 self._closing(part)
                 deep = self._overlap()
@@ -158,8 +167,11 @@ class SolidBlocks:
                 vars(self).update(before)
                 halvings += 1
                 continue
+            if closes:
+                quiet = nearest = nearer = 0
             self._residual = max(worst, self._residual)
             left -= part
+        self._quiet = quiet
         self._push_apart()
 
     def _smooth(self, step: float) -> bool:
@@ -314,7 +326,7 @@ class SolidBlocks:
 def at_rest(bodies: Bodies) -> Step:
     """Return what the contacts of blocks as they were built ask, from rest."""
     contacts, assembly = JointPoints(bodies.problem), bodies.problem.assembly
-    places = np.concatenate([each.points for each in assembly.joints]) / assembly.size
+    places = assembly.points / assembly.size
     axes, sides = contacts.axes[contacts.joint], assembly.sides.T[contacts.joint]
     rows = bodies.rows(axes, places, sides, bodies.built)
     friction = np.minimum(contacts.friction, ROUGH)
