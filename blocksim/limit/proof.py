@@ -195,9 +195,16 @@ def proof_in_rationals(exact: Exact, weights: Array, owner: Sequence[int]) -> Pr
 
 
 def _of_motion(exact: Exact, rates: list[list[int]]) -> Proof | None:
-    """Prove that blocks fall by a motion, of as many loads besides as it can."""
-    if not _lawful(exact, rates):
-        return None
+    """Prove that blocks fall by a motion; None where joints forbid it, or loads do no work."""
+    return by_work(exact, rates) if _lawful(exact, rates) else None
+
+
+def by_work(exact: Exact, rates: list[list[int]]) -> Proof | None:
+    """Prove that blocks fall by the work of the loads, of as many loads besides as it can.
+
+    `rates`, (blocks,): A motion that no joint forbids: velocities and rotations.
+    Returns: None where the loads do no work.
+    """
     for tolerance in (SLACK, NOTHING):
         if _work(exact, rates, 2 if tolerance else 0) > 0:
             return Proof(exact=exact, claim="collapses", tolerance=tolerance, rates=rates)
