@@ -11,8 +11,8 @@ is stored, of whatever length.
   rates open all points. Then blocks that the mechanism does not part move as one, to the last
   digit, and points between such bodies are opened.
 
-Where friction has no bound points may not slip at all. Corners of a face lie in one plane but for
-their last digits, so a hinge slips by those: such a fall is hardly ever proved.
+Where friction has no bound points may not slip at all. Corners of a face lie in one plane but
+for their last digits, so a hinge slips by those: such a fall is hardly ever proved.
 """
 
 from __future__ import annotations
