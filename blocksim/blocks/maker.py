@@ -68,7 +68,7 @@ def parameter(
 
 
 def metres(
-    default: float,
+    default: float | None,
     about: str,
     *,
     low: float = LENGTH.low,

@@ -20,7 +20,7 @@ from blocksim.blocks.shaking import Shaking, table_of
 from blocksim.blocks.soil import Soil
 from blocksim.blocks.space.assembly import FaceJoint, SolidBlock, SpatialAssembly
 from blocksim.blocks.space.polyhedron import Polyhedron
-from blocksim.common.checks import COORDINATE, SMOOTH_OR_ROUGH, endless_text, infinite
+from blocksim.common.checks import COORDINATE, SMOOTH_OR_ROUGH, WEIGHT, endless_text, infinite
 
 if TYPE_CHECKING:
     from blocksim.blocks.maker import Kind
@@ -115,15 +115,12 @@ def _in_plane(built: dict[str, Any]) -> Assembly:
         supports=tuple(Support(**each) for each in built["supports"]),
     )
     blocks = assembly.blocks
-    numbers = [assembly.size]
-    for block in blocks:
-        numbers += [block.mass, block.inertia, block.depth]
     points = [block.centre for block in blocks]
     points += [part for each in (*blocks, *assembly.supports) for part in each.polygons]
     for joint in assembly.joints:
         given = (joint.inner, joint.outer, joint.across, joint.faces)
         points += [each for each in given if each is not None]
-    _require_sound(assembly, numbers, points)
+    _require_sound(assembly, points)
     return assembly
 
 
@@ -141,9 +138,10 @@ def _in_space(built: dict[str, Any]) -> SpatialAssembly:
     points = [block.centre for block in made]
     for joint in assembly.joints:
         points += [joint.points, joint.normal]
-    _require_sound(assembly, [each.weight for each in assembly.blocks], points)
+    _require_sound(assembly, points)
+    heavy = all(WEIGHT.has(each.weight) for each in assembly.blocks)
     normals = np.array([each.normal for each in assembly.joints]).reshape(-1, 3)
-    if not np.allclose(np.linalg.norm(normals, axis=1), 1.0):
+    if not heavy or not np.allclose(np.linalg.norm(normals, axis=1), 1.0):
         raise ValueError(NO_BLOCKS)
     return assembly
 
@@ -208,16 +206,13 @@ def _is_place(value: object, count: int, least: int = 0) -> bool:
     return type(value) is int and least <= value < count
 
 
-def _require_sound(
-    assembly: Assembly | SpatialAssembly, numbers: Sequence[float], points: Sequence[Array]
-) -> None:
+def _require_sound(assembly: Assembly | SpatialAssembly, points: Sequence[Array]) -> None:
     """Raise `ValueError` where a stranger's record cannot be of blocks.
 
-    `numbers`: What has to be above 0.
     `points`: All that is somewhere.
     """
     count, supports = len(assembly.blocks), len(assembly.supports)
-    sound = count > 0 and all(math.isfinite(each) and each > 0 for each in numbers)
+    sound = count > 0
     names: list[object] = [each.name for each in (*assembly.blocks, *assembly.supports)]
     sound &= all(isinstance(each, str) for each in names)
     for joint in assembly.joints:

@@ -11,7 +11,7 @@ import numpy as np
 
 from blocksim.blocks.given import Body
 from blocksim.blocks.made import Fill, Made
-from blocksim.blocks.maker import FARTHEST, Maker, Table, count, metres, parameter
+from blocksim.blocks.maker import Maker, Table, count, metres, parameter
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.fields import fields_of
@@ -24,11 +24,9 @@ from blocksim.kinds.portal import LEVEL, SEMICIRCLE, require_bearing
 class Span(Table):
     """What is another of one span than of the others."""
 
-    span: float | None = parameter(None, "its span", unit="m", high=FARTHEST, optional=True)
-    rise: float | None = parameter(None, "its rise", unit="m", high=FARTHEST, optional=True)
-    thickness: float | None = parameter(
-        None, "its thickness", unit="m", high=FARTHEST, optional=True
-    )
+    span: float | None = metres(None, "its span", optional=True)
+    rise: float | None = metres(None, "its rise", optional=True)
+    thickness: float | None = metres(None, "its thickness", optional=True)
     voussoirs: int | None = parameter(
         None, "number of its voussoirs", whole=True, low=2, high=10_000, optional=True
     )
@@ -41,8 +39,8 @@ class Span(Table):
 class Pier(Table):
     """What is another of one pier than of the others."""
 
-    width: float | None = parameter(None, "its width", unit="m", high=FARTHEST, optional=True)
-    height: float | None = parameter(None, "its height", unit="m", high=FARTHEST, optional=True)
+    width: float | None = metres(None, "its width", optional=True)
+    height: float | None = metres(None, "its height", optional=True)
 
 
 @dataclass(frozen=True, kw_only=True)

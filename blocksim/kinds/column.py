@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from blocksim.blocks.made import Made
-from blocksim.blocks.maker import FARTHEST, Maker, count, metres, parameter
+from blocksim.blocks.maker import Maker, count, metres
 from blocksim.common.errors import InputError
 from blocksim.kinds.blockwork import floor, pier
 
@@ -21,12 +21,8 @@ class Column(Maker):
     drums: int = count(6, "number of drums")
     drum_height: float = metres(0.6, "height of a drum", stands="low")
     width: float = metres(1.0, "width of the column at its foot", stands="high")
-    top_width: float | None = parameter(
-        None,
-        "width of the column at its top; as at its foot if left out",
-        unit="m",
-        high=FARTHEST,
-        optional=True,
+    top_width: float | None = metres(
+        None, "width of the column at its top; as at its foot if left out", optional=True
     )
     depth: float = metres(1.0, "depth out of the plane")
 

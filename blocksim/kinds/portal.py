@@ -8,7 +8,7 @@ from typing import ClassVar
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.given import Body
 from blocksim.blocks.made import Fill, Made
-from blocksim.blocks.maker import FARTHEST, Maker, count, metres, parameter
+from blocksim.blocks.maker import Maker, count, metres, parameter
 from blocksim.common.errors import InputError
 from blocksim.kinds.archkind import ArchKind
 from blocksim.kinds.blockwork import fill_over, floor, head, pier
@@ -38,11 +38,9 @@ class Portal(Maker):
         1.0, "height of the piers, up to the lower springing", stands="low"
     )
     pier_courses: int = count(1, "blocks of each pier")
-    foot_width: float | None = parameter(
+    foot_width: float | None = metres(
         None,
         "width of the piers at the foot, where they are buttresses; as above if left out",
-        unit="m",
-        high=FARTHEST,
         optional=True,
         stands="high",
     )

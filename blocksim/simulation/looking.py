@@ -22,6 +22,8 @@ STICKS = 1e-4
 """Slip over the largest motion of a joint up to which a mechanism does not slide.
 
 Walls of tall blocks slide by a hundredth as they part."""
+WORK = 0.99
+"""Work of the loads, over what goes into a motion, from which on they drive it."""
 SURE = 1e-4
 """Residual over the accelerations at which blocks in space surely move."""
 
@@ -52,8 +54,8 @@ class Looking:
         """Return the largest slip at a joint that stays closed, likewise."""
         return self._shares(poses)[1]
 
-    def work(self, built: Array, rates: Array) -> tuple[float, float]:
-        """Return the work of the loads on a motion over one step, and what goes into it."""
+    def driven(self, built: Array, rates: Array) -> bool:
+        """Tell whether the loads do the work that a motion takes, from rest over one step."""
         assembly = self.assembly
         if self._in_space:
             inner = np.array([block.gyration for block in assembly.blocks]) / assembly.size**2
@@ -62,7 +64,7 @@ class Looking:
             moving = float(masses @ ((rates[:, :3] ** 2).sum(axis=1) + spin))
         else:
             moving = float((assembly.masses * rates**2).sum())
-        return float((self._problem.applied_forces(built) * rates).sum()), moving
+        return float((self._problem.applied_forces(built) * rates).sum()) > WORK * moving
 
     def equilibrium(self) -> tuple[bool, Array | None]:
         """Tell whether forces of equilibrium may exist, and return them [mean weights].

@@ -7,7 +7,7 @@ takes. Its answer is read as one of two certificates, both from the engine's own
   contact forces found balance the weights and respect contact and friction.
 - *collapses*: the accelerations form a mechanism that the weight drives. No joint closes
   further (overlap below `closing` of the motion), and the weight's work on it is at least
-  what goes into the motion (`WORK`): more where joints slide, the same where they turn.
+  what goes into the motion (`looking.WORK`): more where joints slide, the same where they turn.
   Before the sweeps have converged blocks press into each other by percents, or forces at
   parting joints do work that nobody pays for; afterwards by a millionth. An engine that
   states the residual of its contacts is held to that instead of to the work.
@@ -60,7 +60,6 @@ from blocksim.simulation.verdict import Verdict
 
 ROUNDING = 1e-12
 """What is smaller is nothing but rounding."""
-WORK = 0.99
 PROBE = 1e-6
 """Size of the displacement along the accelerations at which joints are looked at."""
 LATE, NEARLY = 0.1, 1e-3
@@ -215,7 +214,7 @@ def _seen(
         if largest < settings.still:
             verdict = Verdict.STANDS
         elif look.overlap(mechanism) < settings.closing and (
-            world.quality().residual is not None or _driven(look, built, accelerations)
+            world.quality().residual is not None or look.driven(built, accelerations)
         ):
             verdict = Verdict.COLLAPSES
     return Onset(verdict=verdict, acceleration=largest, mechanism=mechanism, sweeps=sweeps)
@@ -225,9 +224,3 @@ def _may_hold(problem: Problem[Any], mechanism: Array) -> bool:
     """Tell whether blocks may rest by friction that the engine did not take."""
     look = Looking(problem)
     return look.slip(mechanism) > STICKS and look.equilibrium()[0]
-
-
-def _driven(look: Looking, built: Array, accelerations: Array) -> bool:
-    """Tell whether the loads do the work of the motion, from rest over one step."""
-    of_loads, of_motion = look.work(built, accelerations)
-    return of_loads > WORK * of_motion
