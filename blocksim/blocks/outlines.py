@@ -84,6 +84,11 @@ def signed_area(vertices: Array) -> float:
     return 0.5 * float(np.dot(x, following(y)) - np.dot(following(x), y))
 
 
+def counter_clockwise(corners: Array) -> Array:
+    """Return the corners of a polygon in that order, whichever way they were."""
+    return corners[::-1] if signed_area(corners) < 0 else corners
+
+
 def moments(polygons: Sequence[Array]) -> Moments:
     """Measure polygons that move as one (Green's theorem, exact).
 

@@ -16,7 +16,7 @@ from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
 from blocksim.blocks.entries import Around, StructureFile
 from blocksim.blocks.given import GivenJoint
 from blocksim.blocks.loads import LoadsOf, Names, acting_of, given_joints, named_blocks
-from blocksim.blocks.outlines import signed_area
+from blocksim.blocks.outlines import counter_clockwise
 from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Move, Problem
 from blocksim.blocks.rows import column
@@ -122,7 +122,8 @@ def problem_of(
         acts.on(assembly, mu),
         moves=_moves(written, bodies),
         shaking=None if written.shake is None else shaking_of(**asdict(written.shake)),
-        weighed=written.density is not None or all(map(_has_weight, bodies)),
+        weighed=written.density is not None
+        or all(body.fixed or body.weight is not None for body in bodies),
         notes=(*written.notes, *acts.notes, *found),
     )
 
@@ -151,10 +152,6 @@ def _moves(written: Around, bodies: Sequence[Body]) -> tuple[Move, ...]:
             )
         )
     return tuple(moves)
-
-
-def _has_weight(body: Body) -> bool:
-    return body.fixed or body.weight is not None
 
 
 def load_record(load: Load, names: Sequence[str]) -> list[dict[str, Any]]:
@@ -235,7 +232,7 @@ def _ground(joint: Joint) -> list[list[float]]:
     """Return the corners of a flat triangle behind a joint with the ground."""
     out = joint.normal * (-1 if joint.before == SUPPORT else 1) * joint.length / 10
     corners = np.stack([joint.inner, joint.outer, (joint.inner + joint.outer) / 2 + out])
-    return (corners[::-1] if signed_area(corners) < 0 else corners).tolist()
+    return counter_clockwise(corners).tolist()
 
 
 def _block_records(names: Sequence[str], problem: Problem) -> Iterator[dict[str, Any]]:

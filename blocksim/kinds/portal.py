@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.given import Body
 from blocksim.blocks.made import Fill, Made
@@ -49,7 +51,8 @@ class Portal(Maker):
         """Range of a parameter: springings lie wholly on the piers."""
         low, high = super().limits(name)
         if name == "pier_width":
-            low = max(_reach(face) for face in self.arch.stones.faces[[0, -1]])
+            # Widths of the springings, seen from above.
+            low = float(np.abs(np.diff(self.arch.stones.faces[[0, -1], :, 0])).max())
         return low, high
 
     def made(self, density: float) -> Made:
@@ -85,11 +88,6 @@ class Portal(Maker):
             ),
             fills=(*arch.fills(density, first), *fills),
         )
-
-
-def _reach(face: Array) -> float:
-    """Width of a springing, seen from above [m]."""
-    return float(abs(face[1, 0] - face[0, 0]))
 
 
 def require_bearing(arch: ArchKind, faces: Array) -> None:

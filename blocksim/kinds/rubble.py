@@ -12,7 +12,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.given import Body
 from blocksim.blocks.made import Made
 from blocksim.blocks.maker import Maker, count, metres, parameter
-from blocksim.blocks.outlines import signed_area
+from blocksim.blocks.outlines import counter_clockwise
 from blocksim.kinds.blockwork import floor
 
 SLENDER = 1000.0
@@ -74,7 +74,7 @@ def _cells(points: Array, size: Array) -> list[Array]:
     cells: list[Array] = [
         corners[diagram.regions[diagram.point_region[index]]] for index in range(len(points))
     ]
-    return [cell if signed_area(cell) > 0 else cell[::-1] for cell in cells]
+    return [counter_clockwise(cell) for cell in cells]
 
 
 def _middle(cell: Array) -> Array:

@@ -16,7 +16,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from blocksim.blocks.outlines import signed_area
+from blocksim.blocks.outlines import counter_clockwise
 from blocksim.blocks.polygons import MOST_BLOCKS
 from blocksim.blocks.shapes import MOST_CORNERS
 from blocksim.common.checks import COORDINATE, require
@@ -225,12 +225,7 @@ def _section(mesh: _Mesh, way: Array, across: Array) -> dict[str, Any]:
     low, high = _levels(mesh, way)
     return {
         "id": mesh.name,
-        "polygons": [_turned(flat[face]).tolist() for face in _ends(mesh, way)],
+        "polygons": [counter_clockwise(flat[face]).tolist() for face in _ends(mesh, way)],
         "depth": float(high - low),
         **({"fixed": True} if mesh.fixed else {}),
     }
-
-
-def _turned(corners: Array) -> Array:
-    """Counter-clockwise, as seen along the depth."""
-    return corners[::-1] if signed_area(corners) < 0 else corners

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.outlines import signed_area
+from blocksim.blocks.outlines import counter_clockwise
 from blocksim.blocks.polygons import MOST_BLOCKS
 from blocksim.common.checks import COORDINATE, require
 from blocksim.common.errors import MISSING, InputError
@@ -249,8 +249,8 @@ def _block(shape: Shape, unit: Unit, *, fixed: bool) -> dict[str, Any]:
     far = max(abs(each) * unit.metres for corner in corners for each in corner)
     require(far <= COORDINATE.high, shape.said, far, f"within {COORDINATE.high:g} m")
     # Nobody means anything by the direction in which an outline was drawn.
-    corners = corners[::-1] if signed_area(np.array(corners)) < 0 else corners
-    vertices = [[x * unit.metres, y * unit.metres] for x, y in corners]
+    around = counter_clockwise(np.array(corners))
+    vertices = [[x * unit.metres, y * unit.metres] for x, y in around.tolist()]
     return {"id": plain(shape.name), "vertices": vertices, **({"fixed": True} if fixed else {})}
 
 

@@ -244,7 +244,7 @@ def _inside(
     group: Sequence[_Edge], faces: Sequence[Sequence[int]], of: dict[int, int]
 ) -> tuple[list[int], int | None]:
     """Tell regions that are blocks, from the outside in; or the edge at which it cannot be."""
-    outer = min(range(len(faces)), key=lambda k: _area(group, faces[k]))
+    outer = min(range(len(faces)), key=lambda k: signed_area(np.array(_path(group, faces[k]))))
     full = {outer: False}
     ahead = [outer]
     while ahead:
@@ -266,7 +266,3 @@ def _path(group: Sequence[_Edge], face: Sequence[int]) -> Corners:
     return [
         point for half in face for point in _directed(group[half // 2], bool(half % 2))[:-1]
     ]
-
-
-def _area(group: Sequence[_Edge], face: Sequence[int]) -> float:
-    return signed_area(np.array(_path(group, face)))

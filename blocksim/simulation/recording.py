@@ -218,7 +218,9 @@ def read_recording(
             poses=poses,
             quality=Quality(**_numbers(header.get("quality", {}))),
         )
-        _require_header(recording)
+        name = f"{recording.engine} {recording.engine_version}"
+        named = name.isascii() and name.isprintable() and len(name) < 80
+        require(named, "engine", name, "a name")
     except InputError as error:
         if error.field == "recording":
             raise
@@ -273,12 +275,6 @@ def _numbers(written: Mapping[str, Any]) -> dict[str, Any]:
     if not all(each is None or is_number(each, -inf, inf) for each in named.values()):
         raise TypeError
     return named
-
-
-def _require_header(recording: Recording) -> None:
-    """Raise `InputError` where what is said beside the poses cannot be."""
-    name = f"{recording.engine} {recording.engine_version}"
-    require(name.isascii() and name.isprintable() and len(name) < 80, "engine", name, "a name")
 
 
 def _moves(recording: Recording) -> bool:

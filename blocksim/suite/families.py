@@ -13,7 +13,7 @@ import numpy as np
 
 from blocksim.ask.families import FAMILIES
 from blocksim.blocks.assembly import Array, Support
-from blocksim.blocks.outlines import signed_area
+from blocksim.blocks.outlines import counter_clockwise
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.common.files import shipped_files, toml_of
 from blocksim.kinds import KINDS
@@ -162,7 +162,7 @@ def _footed(problem: Problem, depth: float) -> Problem:
         bearer = 1.0 if joint.before == -1 else -1.0
         out: Array = -bearer * depth * joint.normal
         corners = np.concatenate([ends, ends[::-1] + out])
-        turned = corners if signed_area(corners) > 0 else corners[::-1]
+        turned = counter_clockwise(corners)
         made.append(Support((turned,), support.name))
     return replace(problem, assembly=replace(assembly, supports=tuple(made)))
 
