@@ -536,3 +536,27 @@ def test_a_picture_has_every_block_within_its_frame() -> None:
         assert (low > 0).all()
         assert (high < polygons.get_clip_box().max).all()
         assert len(polygons.get_paths()) >= len(problem.assembly.blocks)
+
+
+@pytest.mark.parametrize("sunk", [0.3e-5, 0.9e-5, 1.5e-5])
+def test_a_block_sunk_by_rounding_rests_on_its_face(sunk: float) -> None:
+    """By less than two steps of the fifth decimal, as of corners turned in space."""
+    block = box((-0.12345, -0.5, -sunk), (1, 1, 1))
+    (joint,) = blocksim.assembly_in_space(
+        [Solid(parts=(GROUND,), fixed=True), Solid(parts=(block,))], tolerance=2e-5
+    ).joints
+    assert joint.points.shape == (4, 3)
+    assert joint.gap == pytest.approx(-sunk)
+
+
+def test_a_smooth_block_rests_on_level_ground_and_bears_no_push(tmp_path: Path) -> None:
+    """What it bears is 0, not a last digit below it."""
+    file = tmp_path / "smooth.json"
+    told = scene(friction=0, live=[{"body": [0.6, 0.8, 0]}])
+    file.write_text(json.dumps(told), encoding="utf-8")
+    said = inside("check", str(file)).stdout
+    assert said.startswith("STANDS")
+    assert "factor at collapse 0: it bears none of the live loads" in said
+    assert "in balance to 1e-12" in said
+    assert inside("check", str(file), "--load", "0.001").stdout.startswith("COLLAPSES")
+    assert "LOAD: 0 is the limit" in inside("bracket", str(file), "--over", "load").stdout

@@ -88,15 +88,20 @@ def _words_in_space(static: SpatialEquilibrium) -> str:
     """Say the same, and how near it was held to."""
     own = "of an even share of its block's weight"
     if static.exists:
-        left = f", but for {static.gap:.1g} of a weight" if static.gap else ""
         return (
-            f"forces of equilibrium exist{left}; the contact nearest to opening or sliding has "
+            "forces of equilibrium exist, in balance to 1e-12 of each block's weight; the "
+            "contact nearest to opening or sliding has "
             f"{100 * static.margin:.3g}% {own} to spare"
         )
     if static.exists is None:
+        by = (
+            f"forces that press every contact leave {static.gap:.1g} of a block's weight over"
+            if 0 < static.margin and math.isfinite(static.gap)
+            else "the contact nearest to opening or sliding has "
+            f"{100 * static.margin:.1g}% {own} to spare"
+        )
         return (
-            "neither forces nor a motion pass the check: the contact nearest to opening or "
-            f"sliding has {100 * static.margin:.1g}% {own} to spare, "
+            f"neither forces nor a motion pass the check: {by}, "
             "which is nearer to the limit than floating-point numbers tell"
         )
     if math.isinf(static.margin):

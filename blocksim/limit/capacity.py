@@ -109,7 +109,7 @@ class Capacity:
             factor = math.inf if found.unbounded else None
             return Collapse(load_factor=factor, forces=None, mechanism=None)
         return Collapse(
-            load_factor=float(found.values[-1]),
+            load_factor=float(found.values[-1]) + 0.0,
             forces=cones.forces(found.values[:-1]),
             mechanism=scaled(cones.rates(found.prices[: cones.balance.shape[0]])),
         )

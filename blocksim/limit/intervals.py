@@ -51,7 +51,7 @@ def over_factor(problem: Problem[Any]) -> tuple[Interval, ...]:
         return ()
     turned = tuple(replace(load, force=-load.force) for load in problem.live)
     least = collapse(replace(problem, live=turned)).load_factor
-    return (Interval(low=-math.inf if least is None else -least, high=most),)
+    return (Interval(low=-math.inf if least is None else 0.0 - least, high=most),)
 
 
 def over_tilt(problem: Problem[Any], low: float, high: float) -> tuple[Interval, ...]:

@@ -60,7 +60,9 @@ def check_lines(answer: Check[Any], carried: Carried | None = None) -> list[str]
     if answer.load_factor is not None:
         at = f", asked at {problem.load:g}" if problem.load else ""
         lines.append(f"  load    factor at collapse {_number(answer.load_factor)}{at}")
-        if answer.load_factor < 0:
+        if not answer.load_factor:
+            lines[-1] += ": it bears none of the live loads"
+        elif answer.load_factor < 0:
             does = "falls" if problem.strength is None else "crushes"
             lines[-1] += f": it {does} under its dead load, without live loads"
     elif problem.live and problem.strength is not None:

@@ -59,7 +59,7 @@ def contact(first: Polyhedron, second: Polyhedron, slack: float) -> Contact | Ov
             return None
         if widest < -slack:
             return Overlap(float(-widest))
-    elif gaps.max() <= RIM * slack and _at_rim(normals[gaps >= -RIM * slack]):
+    elif abs(gaps.max()) <= RIM * slack and _at_rim(normals[gaps >= -RIM * slack]):
         return None
     found: list[Contact] = []
     tried: list[Array] = []

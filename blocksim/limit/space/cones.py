@@ -91,9 +91,13 @@ def _solved(programme: tuple[Any, ...], *, scaled: bool) -> Any:
 
 def _left_over(found: Any) -> tuple[bool, float]:
     """Return how far from solved a programme was left, to choose between two."""
+    said = str(found.status)
     gap = abs(float(found.obj_val) - float(found.obj_val_dual))
     left = max(float(found.r_prim), float(found.r_dual), gap)
-    return str(found.status) not in CERTAIN, left if np.isfinite(left) else np.inf
+    if not np.isfinite(left):
+        # That there is almost surely no solution says more than that none was found.
+        left = 1.0 if "Infeasible" in said else np.inf
+    return said not in CERTAIN, left
 
 
 def _law(friction: Array, press: float) -> tuple[Any, list[Cone]]:

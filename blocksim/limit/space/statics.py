@@ -187,13 +187,14 @@ def largest_load(problem: Problem[SpatialAssembly], *, reduce: bool = True) -> S
     found = contacts.most(pull, live / unit)
     if math.isinf(found.value):
         return SpatialCollapse(load_factor=None if found.value < 0 else math.inf, gap=0.0)
+    value = 0.0 if abs(found.value) <= BALANCED else found.value
     work = float(found.rates @ live) / unit
     bound = -float(found.rates @ pull) / work if work > 0 else math.inf
     gap = abs(bound - found.value) / max(abs(found.value), 1e-300)
     if gap > AGREED and contacts.symmetry.halves:
         return largest_load(problem, reduce=False)
     return SpatialCollapse(
-        load_factor=found.value / unit, gap=gap, mechanism=unit_rates(problem, found.rates)
+        load_factor=value / unit, gap=gap, mechanism=unit_rates(problem, found.rates)
     )
 
 
@@ -203,12 +204,14 @@ def _balanced(contacts: Contacts, pull: Array, forces: Array) -> tuple[Array, fl
     What is left over is inf where a point does not press more than friction needs.
     """
     matrix, own = contacts.matrix, contacts.own
+    across = np.minimum(contacts.friction, 1.0)
+    ways = np.column_stack([np.ones_like(across), across, across])
     for _ in range(3):
         slack = contacts.slack(forces)
         if not (slack > 0).all():
             return forces, math.inf
-        # Points change by no more than they can spare.
-        weights = np.repeat(np.minimum(slack, own) ** 2, 3)
+        # Points change by no more than they can spare: across, none where they are smooth.
+        weights = ((np.minimum(slack, own)[:, None] * ways) ** 2).ravel()
         weighted: Any = matrix @ sparse.diags(weights)
         normal: Any = sparse.csc_matrix(weighted @ matrix.T)
         scale = normal.diagonal().max()
