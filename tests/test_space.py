@@ -560,3 +560,18 @@ def test_a_smooth_block_rests_on_level_ground_and_bears_no_push(tmp_path: Path) 
     assert "in balance to 1e-12" in said
     assert inside("check", str(file), "--load", "0.001").stdout.startswith("COLLAPSES")
     assert "LOAD: 0 is the limit" in inside("bracket", str(file), "--over", "load").stdout
+
+
+@pytest.mark.parametrize(("over", "factor"), [(0.4, math.inf), (0.6, None)])
+@pytest.mark.parametrize(("mu", "way"), [(0.5, (0, 0, -1)), (math.inf, (1, 0, 0))])
+def test_a_load_that_is_borne_to_any_size_holds_no_other_block(
+    over: float, factor: float | None, mu: float, way: tuple[float, ...]
+) -> None:
+    """A block is pressed down, or along ground too rough to slip; another one leans out."""
+    solids = [
+        Solid(parts=(GROUND,), fixed=True, name="ground"),
+        Solid(parts=(box((0, 0, 0), (1, 1, 1)),), name="pressed"),
+        Solid(parts=(box((8 + over, 0, 0), (9 + over, 1, 1)),), name="leans"),
+    ]
+    load = Load(force=np.array(way, dtype=float), blocks=(0,), point=np.array([0.5, 0.5, 0.0]))
+    assert blocksim.collapse(problem_of(solids, mu, live=(load,))).load_factor == factor

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
 from typing import Any
@@ -186,7 +186,8 @@ def largest_load(problem: Problem[SpatialAssembly], *, reduce: bool = True) -> S
     unit = float(np.abs(live / contacts.rows).max()) or 1.0
     found = contacts.most(pull, live / unit)
     if math.isinf(found.value):
-        return SpatialCollapse(load_factor=None if found.value < 0 else math.inf, gap=0.0)
+        boundless = found.value > 0 and _balances(contacts, pull, live / unit)
+        return SpatialCollapse(load_factor=math.inf if boundless else None, gap=0.0)
     value = 0.0 if abs(found.value) <= BALANCED else found.value
     work = float(found.rates @ live) / unit
     bound = -float(found.rates @ pull) / work if work > 0 else math.inf
@@ -196,6 +197,19 @@ def largest_load(problem: Problem[SpatialAssembly], *, reduce: bool = True) -> S
     return SpatialCollapse(
         load_factor=value / unit, gap=gap, mechanism=unit_rates(problem, found.rates)
     )
+
+
+def _balances(contacts: Contacts, pull: Array, live: Array) -> bool:
+    """Tell whether forces balance at any factor on a load that contacts bear to any size.
+
+    A load into the ground may be borne to any size by blocks that fall nevertheless. Where it
+    is borne turned round, too, it decides nothing.
+    """
+    least = contacts.most(pull, -live).value
+    if math.isinf(least) and least > 0:
+        unloaded = replace(contacts, problem=contacts.problem.with_load(0.0))
+        return SpatialEquilibrium(unloaded, unloaded.most(pull)).exists is not False
+    return not math.isinf(least)
 
 
 def _balanced(contacts: Contacts, pull: Array, forces: Array) -> tuple[Array, float]:
