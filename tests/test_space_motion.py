@@ -28,6 +28,14 @@ def test_direct_tells_a_case_a_thousandth_to_both_sides(name: str) -> None:
         assert observe(problem, "direct", moving=False).verdict is verdict
 
 
+@pytest.mark.long
+@pytest.mark.parametrize("beside", [0.01, 0.001])
+def test_a_dome_of_84_blocks_loaded_beyond_its_limit_begins_to_fall(beside: float) -> None:
+    """The only onset here that neither cone programmes nor alternating directions solve."""
+    problem, verdict = asked("dome_12_7_loaded", beside)[1]
+    assert observe(problem, "direct", moving=False).verdict is verdict
+
+
 @pytest.mark.parametrize(
     "name", ["block_topples_20", "tower_113", "tower_103", "harmonic_4_out"]
 )

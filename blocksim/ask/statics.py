@@ -96,7 +96,7 @@ def _words_in_space(static: SpatialEquilibrium) -> str:
     if static.exists is None:
         by = (
             f"forces that press every contact leave {static.gap:.1g} of a block's weight over"
-            if 0 < static.margin and math.isfinite(static.gap)
+            if static.margin > 0 and math.isfinite(static.gap)
             else "the contact nearest to opening or sliding has "
             f"{100 * static.margin:.1g}% {own} to spare"
         )

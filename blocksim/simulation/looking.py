@@ -13,7 +13,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.parting import overlap_and_slip_in_space
 from blocksim.engines.base import FRICTION_CAP, Engine, Settings, World, trusted
 from blocksim.engines.solid.bodies import Bodies
-from blocksim.engines.solid.coulomb import dilating
+from blocksim.engines.solid.dilation import dilating
 from blocksim.engines.solid.stepping import at_rest
 from blocksim.limit import equilibrium, least_motion
 from blocksim.limit.space import can_rest

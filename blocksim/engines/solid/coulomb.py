@@ -12,7 +12,8 @@ friction cone that is nearest, across its axis, to p - r u, with stiff springs r
 with what contacts did in the last step, or with forces of a cone programme, in which slip opens
 by mu times itself, less a guess of that. From nothing no slip is guessed: of rest and motion,
 where Coulomb's law allows both, that finds rest. Else they begin where alternating directions
-lead, which come near a solution from anywhere, of redundant contacts and of wedges, too.
+lead, which come near a solution from anywhere, of redundant contacts and of wedges, too. What
+these do not solve from nothing begins where slip settles (`dilation`), with soft springs first.
 """
 
 from __future__ import annotations
@@ -21,16 +22,15 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from scipy import sparse
 
 from blocksim.blocks.assembly import Array
-from blocksim.common.conic import Cone, solved_cones
+from blocksim.engines.solid.dilation import IN_MOTION, dilating, settled, slip_of
 from blocksim.engines.solid.step import Answer, Step, projected
 
 STIFF = 1e5
 """Springs over the mean mass."""
 STIFFER = 1e2, 1e3, 1e4, STIFF
-"""The same in turn from a guess in motion: soft ones are not lost where blocks jam."""
+"""The same in turn from a guess near a motion: soft ones are not lost where blocks jam."""
 ROUNDS, TRIES = 25, 60
 """Most times that springs follow, and most of Newton's steps for each."""
 BRIEFLY = 25
@@ -47,9 +47,6 @@ NEAR = 1e-3
 """Residual of forces of the last step from which blocks at rest go on; else from nothing."""
 SOLVED, ENOUGH = 1e-9, 3e-8
 """Residual of a solution from nothing, and of one in motion."""
-FINEST, IN_MOTION = 1e-10, 1e-12
-"""Gap and residuals at which a cone programme may end: forces of rest come from well within the
-cones, slip from a programme that ends where it gets no farther."""
 LESS = 0.9997
 """Share of friction that is taken where that much did not tell."""
 AT_REST = 1e-6
@@ -78,12 +75,11 @@ def solve(step: Step, last: Array | None, turns: int = TURNS) -> Answer:
         near = briefly or step.residual(step.pushed_by(last), last) <= NEAR
         if near:
             best = _gone_on(step, last, briefly=briefly)
-    begun = last if briefly else None
-    guesses = _guesses(step, begun, turns) if best.residual > enough else ()
+    guesses = _guesses(step, last, turns, briefly=briefly) if best.residual > enough else ()
     enough = LAWFUL if briefly else enough
-    for guess in guesses:
+    for guess, springs in guesses:
         forces = guess
-        for stiff in STIFFER if briefly else (STIFF,):
+        for stiff in springs:
             found = _followed(step, forces, stiff=stiff, briefly=briefly)
             forces = found.forces
             if found.residual < best.residual:
@@ -108,19 +104,26 @@ def _as_last_resort(step: Step, best: Answer) -> Answer:
     return Answer(x, forces, max(best.residual, step.residual(x, forces)))
 
 
-def _guesses(step: Step, last: Array | None, turns: int) -> Iterator[Array]:
-    """Give forces to begin with, the likeliest and cheapest first."""
-    opening = dilating(step) if last is None else dilating(step, _slip(step.drift), IN_MOTION)
+def _guesses(
+    step: Step, last: Array | None, turns: int, *, briefly: bool
+) -> Iterator[tuple[Array, tuple[float, ...]]]:
+    """Give forces, the likeliest and cheapest first, and the springs that follow them."""
+    springs = STIFFER if briefly else (STIFF,)
+    opening = dilating(step, slip_of(step.drift), IN_MOTION) if briefly else dilating(step)
     if opening is not None:
-        yield opening
-    if last is None:
+        yield opening, springs
+    if not briefly:
         # Of rest near its limit the forces lie on the cones; with less friction within.
         less = dilating(replace(step, friction=LESS * step.friction))
         if less is not None:
-            yield less
+            yield less, springs
     # Near the limit of rest, which is not to be had by now, no forces lead to motion.
-    begun = None if last is None else last
-    yield from _alternated(step, np.zeros_like(step.drift) if begun is None else begun, turns)
+    begun = last if briefly and last is not None else np.zeros_like(step.drift)
+    forces = begun
+    for forces in _alternated(step, begun, turns):
+        yield forces, springs
+    if last is None:
+        yield settled(step, forces), STIFFER
 
 
 def _alternated(step: Step, p: Array, turns: int) -> Iterator[Array]:
@@ -136,7 +139,7 @@ def _alternated(step: Step, p: Array, turns: int) -> Iterator[Array]:
     best, least, opens = p, step.residual(x, p), np.zeros_like(p)
     for turn in range(turns):
         u, drift = step.velocities(x), step.drift.copy()
-        shift = mu * _slip(u)
+        shift = mu * slip_of(u)
         u[:, 0] += shift
         drift[:, 0] += shift
         pushed = p - stiff * u
@@ -155,7 +158,7 @@ def _alternated(step: Step, p: Array, turns: int) -> Iterator[Array]:
         if turn in PAUSES:
             yield best
         u = step.velocities(x)
-        u[:, 0] += mu * _slip(u)
+        u[:, 0] += mu * slip_of(u)
         apart = float(np.abs(opens - u).max())
         moved = stiff * float(np.abs(bands.pull(step.rows, opens - was)).max())
         if apart > LAGS * moved and stiff < STIFF:
@@ -170,16 +173,12 @@ def _alternated(step: Step, p: Array, turns: int) -> Iterator[Array]:
 
 def _nearest(pushed: Array, friction: Array) -> Array:
     """Return the nearest points of the cones of friction."""
-    across = _slip(pushed)
+    across = slip_of(pushed)
     within = across <= friction * pushed[:, 0]
     along = np.maximum(pushed[:, 0] + friction * across, 0.0) / (1 + friction**2)
     share = np.where(within, 1.0, friction * along / np.maximum(across, 1e-300))
     pressure = np.where(within, pushed[:, 0], along)
     return np.column_stack([pressure, share[:, None] * pushed[:, 1:]])
-
-
-def _slip(velocities: Array) -> Array:
-    return np.hypot(velocities[:, 1], velocities[:, 2])
 
 
 def _gone_on(step: Step, p: Array, *, briefly: bool) -> Answer:
@@ -278,34 +277,3 @@ def _given_way(pushed: Array, friction: Array) -> Array:
         found[slides, 1:, 1:] = share[:, None, None] * turn
         found[slides, 1:, 0] = friction[slides, None] * way
     return found
-
-
-def dilating(step: Step, slip: Array | float = 0.0, finest: float = FINEST) -> Array | None:
-    """Return forces of friction that dilates: a cone programme, and rest if there is any.
-
-    `slip`, (points,): By mu times this much less than what slips opens.
-    `finest`: Gap and residuals at which the programme may end.
-    """
-    points, size, mu = len(step.friction), step.bands.size, step.friction
-    round_ = np.flatnonzero(mu > 0)
-    smooth = np.flatnonzero(mu <= 0)
-    # (u_n + mu slip, mu u_t) in the cone of the second order.
-    scale = np.ones((points, 3))
-    scale[:, 1:] = mu[:, None]
-    order = np.concatenate([(3 * round_[:, None] + np.arange(3)).ravel(), 3 * smooth])
-    factor = scale.ravel()[order]
-    rows = sparse.csc_matrix(-(sparse.diags(factor) @ step.matrix[order]))
-    drift = step.drift.copy()
-    drift[:, 0] += mu * slip
-    right = factor * drift.ravel()[order]
-    cones: list[Cone] = [("second-order", 3)] * len(round_)
-    if len(smooth):
-        cones.append(("nonnegative", len(smooth)))
-    inertia = sparse.identity(size, format="csc")
-    found = solved_cones(inertia, -step.free, rows, right, cones, finest=finest)
-    z = np.array(found.z)
-    if not np.isfinite(z).all():
-        return None
-    forces = np.zeros(3 * points)
-    forces[order] = factor * z
-    return projected(forces.reshape(-1, 3), mu)

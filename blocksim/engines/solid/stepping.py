@@ -29,7 +29,8 @@ from blocksim.engines.solid.between import (
     sides_of,
 )
 from blocksim.engines.solid.bodies import Bodies, Place
-from blocksim.engines.solid.coulomb import TURNS, dilating, solve
+from blocksim.engines.solid.coulomb import TURNS, solve
+from blocksim.engines.solid.dilation import dilating
 from blocksim.engines.solid.meeting import Points, meet, near
 from blocksim.engines.solid.memory import Borne
 from blocksim.engines.solid.step import Step
