@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 from blocksim.arch.dimensions import friction_angle
 from blocksim.ask.answer import SOUGHT, UNPROVED
 from blocksim.ask.rest import rest_words
-from blocksim.blocks.acting import tilt_and_lean
 from blocksim.blocks.joints import JointState, joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
@@ -198,12 +197,10 @@ def _arch_line(of: ArchAnswer, problem: Problem, *, tried: bool) -> str:
     # Where a line stays, depth is told over its radius.
     radius = arch.radius if line is None or tried else line.radius
     eta = f"eta {arch.eta:g}, " if tried else ""
-    _, lean = tilt_and_lean(problem)
-    leans = f", gravity leans {lean:g} deg out of the plane" if lean else ""
     return (
         f"  arch    alpha {math.degrees(arch.half_angle):g} deg, {eta}mu {problem.mu:g}, "
         f"{arch.voussoirs} voussoirs, weight {arch.weight}, "
-        f"depth {arch.depth / radius:g} r{leans}"
+        f"depth {arch.depth / radius:g} r"
     )
 
 

@@ -166,14 +166,12 @@ def load_words(problem: Problem[Any]) -> list[str]:
         )
         count = len(problem.live)
         words.append(f"{count} live load{'s' * (count > 1)}, {factor}.")
-    tilt, lean = tilt_and_lean(problem)
+    tilt, _ = tilt_and_lean(problem)
     if abs(tilt) > 1e-9:
         where = "in the plane"
         if problem.in_space:
             where = f"towards {towards(problem):.4g}° from x"
         words.append(f"Gravity is tilted by {tilt:.4g}° {where}.")
-    if lean:
-        words.append(f"Gravity leans {lean:.4g}° out of the plane.")
     if problem.shaking is not None:
         words.append(f"The ground shakes: {problem.shaking.words}.")
     return words

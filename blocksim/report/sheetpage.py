@@ -194,7 +194,7 @@ def _fall(answer: Check[Any]) -> dict[str, Any] | None:
     if factor is not None and 0 < factor < float("inf") and not problem.shaking:
         over = problem.with_load(factor * (1 + 1e-3))
         return _asked(over, f"how it would start to fall at load factor {factor:.4g}")
-    offers = offers_of(problem) if problem.is_planar else None
+    offers = None if problem.in_space else offers_of(problem)
     least = None if offers is None else offers.threshold("thickness")
     if least is None or not least.exact:
         return None

@@ -32,9 +32,9 @@ def _shown(number: int, rows: list[StructureRow]) -> dict[str, Any]:
     still = [row for row in rows[::-1] if row.drawn is not None]
     best = (seen or falls or still or [None])[0]
     drawn = best.drawn if best else None
-    # Blocks in space, and motion out of the plane, are not drawn here yet.
+    # Blocks in space are not drawn here yet.
     drawing = None
-    if drawn is not None and drawn.problem.is_planar:
+    if drawn is not None and not drawn.problem.in_space:
         drawing = mechanism_drawing(drawn.problem, drawn.rates, drawn.states)
     caption, words = _told(best) if best else ("", "")
     asked = [_asked([row for row in rows if row.question == each]) for each in questions]

@@ -77,10 +77,6 @@ class StructureRow:
     drawn: Drawn | None = None
 
 
-Question = Callable[[StructureRow, Known, ExpectEntry], StructureRow]
-"""Answers a row whose method is set, and says what is expected."""
-
-
 def answer(known: Known, expected: ExpectEntry, method: str) -> StructureRow:
     """Answer one question by one method, and compare."""
     started = time.perf_counter()
@@ -131,7 +127,10 @@ def _valued(row: StructureRow, known: Known, expected: ExpectEntry) -> Structure
     return _aside(row, family, value, engine_named(row.method).aside if still else SHAKEN)
 
 
-QUESTIONS: dict[str, Question] = {"verdict": _judged, "over": _valued}
+QUESTIONS: dict[str, Callable[[StructureRow, Known, ExpectEntry], StructureRow]] = {
+    "verdict": _judged,
+    "over": _valued,
+}
 """Answers by the key of an expectation. Another question is one more of them."""
 
 

@@ -6,7 +6,6 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
-from blocksim.blocks.regions import hull
 from blocksim.view.canvas import Label, Panel, Shape, colour, edge_width, mixed, stone_tones
 from blocksim.view.drawing import words_of
 from blocksim.view.stage import Stage
@@ -65,17 +64,14 @@ class PlanarView:
     def shapes(self, moment: Moment) -> list[Shape]:
         """Draw a moment."""
         edge = mixed(colour(STONE), colour(INK), 0.75)
-        # What has turned out of the plane shows its sides, too; the nearest comes last.
-        heights = moment.corners[..., 2].max(axis=(1, 2)).round(9)
-        order = np.argsort(heights, kind="stable").tolist()
-        owner, parted = self._stage.owner, {at for at, _ in self._stage.rims}
+        parted = {at for at, _ in self._stage.rims}
+        owners: list[int] = self._stage.owner.tolist()
         blocks: list[Shape] = []
-        for piece in order:
-            points = self._to_pixels(_outline(moment.corners[piece]))
-            tone = self._tones[owner[piece]]
-            if owner[piece] in self._stage.carriers:
+        for block, (near, _) in zip(owners, moment.corners, strict=True):
+            points, tone = self.places(near), self._tones[block]
+            if block in self._stage.carriers:
                 tone = mixed(colour(GROUND), colour(PAPER), 0.35)
-            if owner[piece] not in parted:
+            if block not in parted:
                 blocks.append(Shape(points, fill=tone, edge=edge, width=self._line))
                 continue
             # Parts of one block have no edge between them: a hair of stone closes the seam.
@@ -150,14 +146,6 @@ class PlanarView:
             Shape(self._to_pixels(piece), edge=tone, width=2.4, closed=False)
             for piece in self._stage.thrust
         ]
-
-
-def _outline(corners: Array) -> Array:
-    """Outline of a prism, (2, sides, 3), as seen from the front, (k, 2)."""
-    near, far = corners[..., :2]
-    if (np.abs(near - far) <= 1e-9).all():
-        return near
-    return hull([near, far])
 
 
 def _circle(centre: Array, radius: float) -> Array:

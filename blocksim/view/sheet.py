@@ -151,10 +151,9 @@ def answer_sheet(answer: Check[Any], titles: Titles | None = None) -> Sheet:
     made = sheet_of(
         answer.problem,
         verdict=f"{answer.verdict.value}{named}, by {answer.method}{besides}",
-        # A motion out of the plane is not drawn in it.
-        mechanism=answer.mechanism if answer.problem.has_statics else None,
+        mechanism=answer.mechanism,
         joint_states=[joint.state for joint in answer.joints],
-        forces=answer.forces if answer.problem.is_planar else None,
+        forces=answer.forces,
         carried=answer.carried,
     )
     return made if titles is None else replace(made, titles=titles)
