@@ -49,7 +49,9 @@ class Proof:
     `tolerance`: Loads that differ from those given by no more are proved as well (`collapses`)
         or instead (`stands`, where it is 0 but for structures that touch their limit): force
         over the weight of each block, moment over that times its reach.
-    `forces`: At each point of each joint, on the block after it; empty where it falls.
+    `forces`: On the block after each joint; empty where it falls. In the plane a, b at both
+        ends of each joint: the force a n + b t, where n is its normal and t that turned
+        counter-clockwise by a right angle. In space a vector at each point of each joint.
     `unit`: Of the forces [N].
     `rates`: Velocity of the centre of each block, and its rotation, in any unit; empty where it
         stands.
@@ -58,7 +60,7 @@ class Proof:
     exact: Exact
     claim: Literal["stands", "collapses"]
     tolerance: Fraction = NOTHING
-    forces: Sequence[Sequence[Sequence[Number]]] = ()
+    forces: Sequence[Any] = ()
     unit: Fraction = NOTHING
     rates: list[list[int]] = field(default_factory=list[list[int]])
 
@@ -80,8 +82,9 @@ def proof_record(proof: Proof) -> dict[str, Any]:
         "problem": written,
     }
     if proof.claim == "stands":
+        forces = proof.forces if in_space else _vectors(exact, proof.forces)
         table["forces"] = [[[str(part * proof.unit) for part in force] for force in joint]
-                           for joint in proof.forces]  # fmt: skip
+                           for joint in forces]  # fmt: skip
     else:
         names = [each["id"] for each in table["problem"]["blocks"] if not each.get("fixed")]
         common = math.gcd(*(each for rate in proof.rates for each in rate))
@@ -122,13 +125,12 @@ def proof_of_rest(exact: Exact, forces: Array) -> Proof | None:
     left = _left(exact, whole, each)
     handed = handed_on(exact, whole, left, forces)
     if handed is not None and _within(exact, handed):
-        return Proof(exact=exact, claim="stands", forces=_vectors(exact, handed), unit=unit)
+        return Proof(exact=exact, claim="stands", forces=handed, unit=unit)
     for wrench, allowed in zip(left, exact.allowed, strict=True):
         # Less than is allowed: how far a block reaches is rounded here.
         if any(2 * abs(w) > each * most for w, most in zip(wrench, allowed, strict=True)):
             return None
-    found = _vectors(exact, whole)
-    return Proof(exact=exact, claim="stands", tolerance=SLACK, forces=found, unit=unit)
+    return Proof(exact=exact, claim="stands", tolerance=SLACK, forces=whole, unit=unit)
 
 
 def proof_of_fall(
@@ -191,7 +193,7 @@ def proof_in_rationals(exact: Exact, weights: Array, owner: Sequence[int]) -> Pr
     sizes = [abs(p) + abs(q) for p, q in exact.normals for _ in range(4)]
     if any(abs(each) * size > most for each, size in zip(forces, sizes, strict=True)):
         return None
-    return Proof(exact=exact, claim="stands", forces=_vectors(exact, forces), unit=exact.force)
+    return Proof(exact=exact, claim="stands", forces=forces, unit=exact.force)
 
 
 def _of_motion(exact: Exact, rates: list[list[int]]) -> Proof | None:
@@ -230,11 +232,7 @@ def _left(exact: Exact, whole: list[int], each: int) -> list[list[int]]:
 
 
 def _vectors(exact: Exact, parts: Sequence[Number]) -> list[list[list[Number]]]:
-    """Return forces at the points of joints, of their parts along normals and tangents.
-
-    `parts`: a, b at both ends of each joint: the force a n + b t, where n is its normal, and t
-        that turned counter-clockwise by a right angle.
-    """
+    """Return forces at the points of joints in the plane, of their parts as of `Proof`."""
     found: list[list[list[Number]]] = []
     for at, ((p, q), ends) in enumerate(zip(exact.normals, exact.ends, strict=True)):
         a, b, c, d = parts[4 * at : 4 * at + 4]
