@@ -126,8 +126,7 @@ def test_blocks_turn_as_far_as_housner_says(shape: str, engine: str) -> None:
     """Through impacts, of which each keeps what contact alone leaves."""
     pulse = (shape, 0.45, 0.5)
     wanted = rocks(1.0, 4.0, lambda now: acceleration(*pulse, now), shaken=0.5).largest
-    fine = {"step": 0.0025} if engine == "direct" else {}
-    seen = check(on_pulse(block(), *pulse), method=engine, settings=fine).shaken
+    seen = check(on_pulse(block(), *pulse), method=engine).shaken
     assert seen.rocking.rotation == pytest.approx(wanted, rel=0.015)
 
 
