@@ -371,12 +371,12 @@ def test_the_worse_way_is_taken() -> None:
     tilt, beta = math.radians(3.0), math.atan(0.5 / 3.0)
     found = borne(column.tilted(tilt))
     # The push goes along the table, gravity leans on it.
-    for way, turn in (("right", -1), ("left", 1)):
+    for way, turn in (("to the right", -1), ("to the left", 1)):
         exact = math.cos(tilt) * (math.tan(beta) + turn * math.tan(tilt))
         assert found[way] == pytest.approx(exact, rel=1e-9)
-    low = pushed(column.tilted(tilt), found["right"] * 1.001)
+    low = pushed(column.tilted(tilt), found["to the right"] * 1.001)
     assert not equilibrium(low).exists
-    assert equilibrium(pushed(column.tilted(tilt), found["right"] * 0.999)).exists
+    assert equilibrium(pushed(column.tilted(tilt), found["to the right"] * 0.999)).exists
     assert "g to the right: it bears" in low.notes[-1]
 
 

@@ -317,9 +317,12 @@ def hinged() -> Recording:
 def test_gif_keeps_the_colours_that_say_something(tmp_path: Path) -> None:
     """Hinges at either end and the line of thrust: each its own colour in every frame.
 
+    Frames that are equal are one that stands longer.
+
     In perspective: there hundreds of shades of stone and ground want a place, too.
     """
-    render([hinged()], tmp_path / "film.gif", view="3d", slow=1, height=360)
+    film = render([hinged()], tmp_path / "film.gif", view="3d", slow=1, height=360)
+    lasts = 0
     told = {
         "extrados": JOINTS[JointState.HINGE_EXTRADOS],
         "intrados": JOINTS[JointState.HINGE_INTRADOS],
@@ -329,6 +332,7 @@ def test_gif_keeps_the_colours_that_say_something(tmp_path: Path) -> None:
     with Image.open(tmp_path / "film.gif") as picture:
         for number in range(picture.n_frames):
             picture.seek(number)
+            lasts += picture.info["duration"]
             decoded = np.asarray(picture.convert("RGB")).astype(int)
             legend = decoded[-24:]
             for name, tone in told.items():
@@ -336,6 +340,7 @@ def test_gif_keeps_the_colours_that_say_something(tmp_path: Path) -> None:
                 off = np.abs(legend - wanted).max(axis=-1)
                 seen[name] += int((off <= 6).sum() >= 20)
     assert set(seen.values()) == {picture.n_frames}
+    assert lasts == pytest.approx(1000 * film.count / film.rate, abs=1)
 
 
 def test_lengths_and_times_have_units_where_a_radius_was_given() -> None:
