@@ -7,6 +7,7 @@ import math
 import re
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -42,6 +43,7 @@ from blocksim import (
 from blocksim.blocks.space.polyhedron import frame
 from blocksim.common.fields import fields_of
 from blocksim.limit.space import can_rest, largest_load
+from blocksim.limit.space.cones import _left_over
 from blocksim.view.solidfigure import solid_figure
 from blocksim.view.style import JOINTS
 
@@ -575,3 +577,19 @@ def test_a_load_that_is_borne_to_any_size_holds_no_other_block(
     ]
     load = Load(force=np.array(way, dtype=float), blocks=(0,), point=np.array([0.5, 0.5, 0.0]))
     assert blocksim.collapse(problem_of(solids, mu, live=(load,))).load_factor == factor
+
+
+def test_a_solution_refutes_that_there_is_none() -> None:
+    """As of a stack pushed a thousandth beyond friction, scaled by the solver and not."""
+    near = SimpleNamespace(
+        status="AlmostSolved", obj_val=0.004, obj_val_dual=0.004, r_prim=7e-11, r_dual=1e-10
+    )
+    none = SimpleNamespace(
+        status="PrimalInfeasible",
+        obj_val=math.nan,
+        obj_val_dual=math.nan,
+        r_prim=2.5,
+        r_dual=0.6,
+    )
+    assert _left_over(near) < _left_over(none)
+    assert _left_over(none) < _left_over(SimpleNamespace(**{**vars(near), "r_dual": 1e-3}))

@@ -17,6 +17,13 @@ FINEST = 1e-11
 CERTAIN = ("Solved", "PrimalInfeasible", "DualInfeasible")
 SOLVED = ("Solved", "AlmostSolved", "InsufficientProgress", "MaxIterations", "NumericalError")
 """What it says where it has values, which are judged by what they are."""
+REFUTED = {
+    "PrimalInfeasible": 1e-9,
+    "DualInfeasible": 1e-9,
+    "AlmostPrimalInfeasible": 1.0,
+    "AlmostDualInfeasible": 1.0,
+}
+"""Residual of a solution, by the other way of scaling, that refutes that there is none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,11 +100,8 @@ def _left_over(found: Any) -> tuple[bool, float]:
     """Return how far from solved a programme was left, to choose between two."""
     said = str(found.status)
     gap = abs(float(found.obj_val) - float(found.obj_val_dual))
-    left = max(float(found.r_prim), float(found.r_dual), gap)
-    if not np.isfinite(left):
-        # That there is almost surely no solution says more than that none was found.
-        left = 1.0 if "Infeasible" in said else np.inf
-    return said not in CERTAIN, left
+    left = REFUTED.get(said) or max(float(found.r_prim), float(found.r_dual), gap)
+    return said != "Solved", left if np.isfinite(left) else np.inf
 
 
 def _law(friction: Array, press: float) -> tuple[Any, list[Cone]]:
