@@ -210,7 +210,7 @@ def by_programmes(
         least = family.low
         reason = f"forces of equilibrium exist down to {least:.6g}"
         return Search(stands=least, runs=1, reason=reason)
-    spatial = family.problem.in_space
+    spatial = family.at(exact).in_space
     told: list[bool | None] = []
     falls = stands = exact
     runs, blocks = 0, None
