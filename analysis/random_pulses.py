@@ -139,7 +139,7 @@ def main(out: Path, *, quick: bool = False, count: int = 1000, processes: int = 
     cases = [(STRUCTURES[seed % len(STRUCTURES)], seed) for seed in range(count)]
     ask = partial(asked, finer=0.1 if quick else 0.01)
     rows = answers(out / "random_pulses.jsonl", cases, ask, processes)
-    write_rows(out / "random_pulses.csv", rows)
+    write_rows(out / "random_pulses.csv.gz", rows)
     return rows
 
 

@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from worlds import ground_level
+from worlds import DIRECT, Blocks, ground_level
 
 from analysis import rubble
-from blocksim import Arch, CircularArch, Recording, simulate
+from blocksim import Arch, CircularArch, Recording, equilibrium, simulate
 from blocksim.engines.energy import Balance, energy
 from blocksim.engines.solids import obj_text, prism
 
@@ -54,6 +54,17 @@ def test_a_collapse_ends_on_the_ground(engine: str, case: rubble.Case) -> None:
     assert 0 < lowest < 0.3
     assert recording.times[-1] < rubble.LONGEST
     assert lies_still(recording)
+
+
+@LONG
+def test_every_heap_begins_to_fall() -> None:
+    """Of 30 to 180 stones; statics proves that each falls."""
+    for case in rubble.cases(rubble.COUNT, rubble.HEAPS):
+        problem = rubble.drawn(case)
+        assert not equilibrium(problem).exists
+        world = Blocks(problem, DIRECT.rule(problem.assembly))
+        assert np.abs(world.hold(1)).max() > 0.1, case
+        assert world.quality().residual < 1e-9, case
 
 
 def test_what_leaves_the_plane_falls_onto_the_ground() -> None:
