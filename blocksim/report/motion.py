@@ -106,7 +106,7 @@ def recorded_drawing(recording: Recording) -> Drawing:
     later = np.minimum(earlier + 1, len(places) - 1)
     share = (where - earlier)[:, None, None]
     poses = recording.poses[earlier] * (1 - share) + recording.poses[later] * share
-    moved = (poses - recording.poses[0])[..., :PLANAR]
+    moved = poses - recording.poses[0]
     states = [joint.state for joint in joints_of(recording)]
     return _drawing(recording.problem, states, moved, enlarged, Stage(recording).thrust)
 
@@ -119,7 +119,6 @@ def mechanism_drawing(
     still = np.zeros((1, len(blocks), PLANAR))
     if rates is None:
         return _drawing(problem, states, still, None)
-    rates = rates[:, :PLANAR]
     scale = SHOWN / max(
         float(np.hypot(*carried(block.vertices / size, block.centre / size, rate).T).max())
         for block, rate in zip(blocks, rates, strict=True)

@@ -29,9 +29,8 @@ def write_recording_csv(recording: Recording[Any], file: BinaryIO) -> None:
     """Write a row for each block at each time, for `pandas.read_csv`.
 
     Columns are `time_s`, `block` (its name, else its number), where its centre of weight is
-    (`x_m`, `y_m`) and `rotation_rad`, counter-clockwise; from engines in three dimensions also
-    `z_m`, `rotation_x_rad` and `rotation_y_rad`: with `rotation_rad`, about z, a rotation
-    vector. In space that is called `rotation_z_rad`.
+    (`x_m`, `y_m`) and `rotation_rad`, counter-clockwise. In space they are `z_m`, too, and a
+    rotation vector: `rotation_x_rad`, `rotation_y_rad` and `rotation_z_rad`.
     """
     poses, names = _poses(recording), _names(recording)
     values = np.stack(list(poses.values()), axis=-1)

@@ -222,10 +222,7 @@ class Stage(Timeline):
         return self._placing.corners(self.poses_at(time))
 
     def joints_at(self, poses: Array, time: float) -> tuple[JointState, ...]:
-        """Tell what joints are seen to do at poses, (blocks, 3 or 6), and their time."""
-        # Joint states are those of motion in the plane.
-        if not self.recording.problem.is_planar:
-            return (JointState.CLOSED,) * len(self.assembly.joints)
+        """Tell what joints are seen to do at poses, (blocks, 3), and their time."""
         states: list[JointState] = []
         seen = classify(self.assembly, poses, least=SEEN)
         for joint, parted, gone in zip(seen, *self._fates, strict=True):
