@@ -176,10 +176,7 @@ def test_static_methods_on_both_sides(
 ) -> None:
     alpha = math.radians(degrees)
     known = least(alpha, mu, count, weight)
-    exact = {
-        "theory": known.eta_theory,
-        "limit": known.eta_limit,
-    }[method]
+    exact = {"theory": known.eta_theory, "limit": known.eta_limit}[method]
     eta = (exact or 1.0) * ratio
     assume(eta <= 2)
     arch = Arch(half_angle=alpha, eta=eta, voussoirs=count, weight=weight)

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import click
 import pytest
-from running import PROGRAM, answered
-from running import inside as blocksim
+from running import PROGRAM, answered, inside
 
 from blocksim import load_recording
 from blocksim.cli import main
@@ -25,7 +24,7 @@ ARCH = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "27")
 def test_check_answers_with_its_exit_code(
     method: str, eta: str, verdict: str, code: int
 ) -> None:
-    done = blocksim("check", *ARCH, "--eta", eta, "--method", method, "--json")
+    done = inside("check", *ARCH, "--eta", eta, "--method", method, "--json")
     answer = json.loads(done.stdout)
     assert done.returncode == code
     assert done.stderr == ""
@@ -63,7 +62,7 @@ def test_an_option_given_twice_is_taken_twice_or_refused() -> None:
                 continue
             ways = [*option.opts, *option.secondary_opts]
             value = [] if option.is_flag else ["1"] * option.nargs
-            done = blocksim(*name.split(), ways[0], *value, ways[-1], *value)
+            done = inside(*name.split(), ways[0], *value, ways[-1], *value)
             if option.multiple:
                 assert REPEATED & {ways[0], f"{name} {ways[0]}"}
                 continue
@@ -77,7 +76,7 @@ def test_options_that_may_be_given_twice_are_taken_twice() -> None:
     wall = ("check", "wall", "--mu", "1", "--json")
     sizes = ("--with", "courses=2", "--with", "length=3")
     blocks = [
-        json.loads(blocksim(*wall, *given).stdout)["problem"]["blocks"]
+        json.loads(inside(*wall, *given).stdout)["problem"]["blocks"]
         for given in ((), sizes[:2], sizes[2:], sizes)
     ]
     assert len(set(blocks)) == 4
@@ -87,7 +86,7 @@ def test_options_that_may_be_given_twice_are_taken_twice() -> None:
     assert "step 0.02 as given" in reason
     assert "hold_sweeps 20 as given" in reason
     assert "Pymunk" in (
-        said := blocksim("cite", "--method", "pymunk", "--method", "mujoco").stdout
+        said := inside("cite", "--method", "pymunk", "--method", "mujoco").stdout
     )
     assert "MuJoCo" in said
 
@@ -128,7 +127,7 @@ def test_a_crash_is_no_verdict(
 
 def test_simulate_writes_a_recording_of_the_time_asked_for(tmp_path: Path) -> None:
     out = tmp_path / "run.npz"
-    done = blocksim("simulate", *ARCH, "--eta", "0.1", "--seconds", "0.5", "--out", str(out))
+    done = inside("simulate", *ARCH, "--eta", "0.1", "--seconds", "0.5", "--out", str(out))
     recording = load_recording(out)
     assert done.returncode == 0
     assert recording.state_hash in done.stdout
@@ -140,7 +139,7 @@ def test_simulate_writes_a_recording_of_the_time_asked_for(tmp_path: Path) -> No
 def test_settings_of_an_engine_can_be_given(tmp_path: Path) -> None:
     asked = ("check", *ARCH, "--eta", "0.1", "--method", "pymunk", "--json")
     # No engine of impulses has converged after so few sweeps.
-    done = blocksim(*asked, "--set", "hold_sweeps=100")
+    done = inside(*asked, "--set", "hold_sweeps=100")
     assert done.returncode == 3
     assert json.loads(done.stdout)["reason"].endswith("; hold_sweeps 100 as given")
     answer = answered("bracket", *ARCH, "--method", "direct", "--set", "step=0.005")
@@ -148,7 +147,7 @@ def test_settings_of_an_engine_can_be_given(tmp_path: Path) -> None:
     assert arch["eta_low"] < arch["eta_limit"] < arch["eta_high"]
     assert answer["reason"].endswith("; step 0.005 as given")
     out = tmp_path / "run.npz"
-    blocksim(
+    inside(
         *("simulate", *ARCH, "--eta", "0.1", "--method", "direct", "--out", str(out)),
         *("--set", "step=0.005", "--set", "rest=1e-8"),
     )

@@ -114,10 +114,7 @@ def test_a_lopsided_vehicle_goes_both_ways() -> None:
 
 DENSITIES = {
     "1:2": (lambda _: 1.0, 0.5),
-    "boussinesq": (
-        lambda t: 2 / math.pi / (1 + t * t) ** 2,
-        math.tan(math.pi / 6),
-    ),
+    "boussinesq": (lambda t: 2 / math.pi / (1 + t * t) ** 2, math.tan(math.pi / 6)),
 }
 """Share of a load along rays of each slope, before it is scaled to carry all of it."""
 

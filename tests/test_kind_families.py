@@ -12,7 +12,6 @@ import pytest
 from kind_cases import CATENARY, KINDS, LEAST, PIERS
 from own_bridge import Bridge
 from running import inside
-from running import inside as blocksim
 from scipy.integrate import quad
 from scipy.optimize import linprog
 from structure_cases import case
@@ -88,11 +87,7 @@ def test_an_island_is_told() -> None:
 
 @pytest.mark.parametrize(
     ("name", "joints"),
-    [
-        ("circular", "normal"),
-        ("pointed", "vertical"),
-        ("basket-handle", "vertical"),
-    ],
+    [("circular", "normal"), ("pointed", "vertical"), ("basket-handle", "vertical")],
 )
 def test_direct_finds_it_again(name: str, joints: str) -> None:
     """On both sides of 0.1 %, by letting them go."""
@@ -120,25 +115,25 @@ def test_what_slips_may_come_to_rest_again() -> None:
 
 def test_a_kind_by_its_name() -> None:
     """The same as the file that says so; parameters of a file can be changed."""
-    done = blocksim(
+    done = inside(
         "bracket", "pointed-arch", "--mu", "inf", "--with", "voussoirs=60",
         "--with", "radius=1.25", "--json",
     )  # fmt: skip
     want = case("pointed_e0_25")["expected"]["value"]
     assert json.loads(done.stdout)["limit"] == pytest.approx(want, rel=1e-7)
     thin = ("portal", "--mu", "0.7", "--with", "pier_width=1", "--with", "arch.thickness=0.1")
-    assert blocksim("check", *thin).returncode == 1
-    assert blocksim("check", *thin[:-1], "arch.thickness=0.12").returncode == 0
+    assert inside("check", *thin).returncode == 1
+    assert inside("check", *thin[:-1], "arch.thickness=0.12").returncode == 0
     pushed = ("column", "--mu", "0.9", "--with", 'live=[{"body": [1, 0]}]', "--json")
-    factor = json.loads(blocksim("check", *pushed).stdout)["load_factor"]
+    factor = json.loads(inside("check", *pushed).stdout)["load_factor"]
     assert factor == pytest.approx(1 / 3.6, rel=1e-9)
 
 
 def test_kinds_are_listed() -> None:
     """With what they are; and of one its parameters, their defaults and ranges."""
-    listed = blocksim("kinds").stdout
+    listed = inside("kinds").stdout
     assert all(name in listed for name in KINDS)
-    rows = blocksim("kinds", "portal").stdout.splitlines()
+    rows = inside("kinds", "portal").stdout.splitlines()
     at, width = next(each for each in enumerate(rows) if each[1].startswith("pier_width"))
     assert "0.6" in width
     # Of 80 characters, the unit stands below.

@@ -12,8 +12,7 @@ from typing import Any
 import pytest
 from kind_cases import KINDS
 from report_rows import ROW
-from running import answered, csv_rows
-from running import inside as blocksim
+from running import answered, csv_rows, inside
 from space_cases import NAMES as SPACE_NAMES
 from space_cases import case as space_case
 from structure_cases import case
@@ -28,10 +27,7 @@ from blocksim.report.tables import write_results
 from blocksim.studies.questions import StructureRow, answer
 from blocksim.studies.validate import structures, unasked, validate
 
-CASES = {
-    "gable": "gable_least_friction",
-    "skew_arch_crown": "arch_15_skew_30_crown",
-}
+CASES = {"gable": "gable_least_friction", "skew_arch_crown": "arch_15_skew_30_crown"}
 """Shipped structures that the corpus calls otherwise."""
 PRINTED = {
     "oppenheim_7": "0.37",
@@ -111,9 +107,9 @@ def test_a_structure_is_asked_by_its_name(tmp_path: Path) -> None:
     found = answered("bracket", "gable", "--over", "mu")
     assert found["limit"] == pytest.approx(6 / 13, rel=1e-9)
     picture = tmp_path / "pointed.svg"
-    assert blocksim("render", "pointed_e0_25", "--out", str(picture)).returncode == 0
+    assert inside("render", "pointed_e0_25", "--out", str(picture)).returncode == 0
     assert "A pointed arch of two arcs" in re.sub(r"<!-- (.*?) -->", r"\1", picture.read_text())
-    listed = blocksim("scenarios").stdout
+    listed = inside("scenarios").stdout
     assert "oppenheim_7" in listed
     assert "--over load 0.370534" in listed
     with pytest.raises(InputError, match="or a shipped structure"):
@@ -128,7 +124,7 @@ def test_only_arches_have_an_intrados() -> None:
     assert base["hinge"] == pytest.approx(max(base["ends"]))
     assert {joint["state"] for joint in told["joints"][1:]} == {"closed"}
     assert {joint["hinge"] and 1 for joint in told["joints"][1:]} == {None}
-    lines = blocksim("check", "column_six_drums", "--tilt", "16").stdout
+    lines = inside("check", "column_six_drums", "--tilt", "16").stdout
     assert re.search(r"joints +floor-drum 1 hinge\n", lines)
     arch = answered("check", "oppenheim_7", "--load", "0.372", code=1)
     states = [joint["state"] for joint in arch["joints"] if joint["state"] != "closed"]
@@ -300,7 +296,7 @@ def test_the_exit_code_counts_both_parts(
     monkeypatch.setattr("blocksim.report.tables.write_results", lambda *_: [])
     told = [replace(ROW, miss=arch), replace(rows[0], miss=structure), *rows[1:]]
     monkeypatch.setattr(f"{at}run_validation", lambda *_, **__: told)
-    done = blocksim("validate", "--quick", "--out", str(tmp_path))
+    done = inside("validate", "--quick", "--out", str(tmp_path))
     assert done.returncode == code
     agree = "10 of 11" if structure else "All 11"
     assert f"{agree} answers on 4 other structures agree with their sources" in done.stdout

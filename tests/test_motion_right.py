@@ -347,11 +347,7 @@ def test_two_bars_collapse_as_their_feet_slide_apart():
             [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
         )
         (tx, ty), (fx, fy) = turned @ top, turned @ foot
-        system = [
-            [ty, 1.0, -mu],
-            [-fx, 0.0, -1.0],
-            [inertia, -ty, -(fx - mu * fy)],
-        ]
+        system = [[ty, 1.0, -mu], [-fx, 0.0, -1.0], [inertia, -ty, -(fx - mu * fy)]]
         known = [-tx * speed**2, -1.0 - fy * speed**2, 0.0]
         return [speed, np.linalg.solve(system, known)[0]]
 

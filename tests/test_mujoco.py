@@ -53,10 +53,7 @@ def test_let_go_it_does_what_the_onset_test_says(ratio: float, expected: Verdict
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(
-    ("ratio", "expected"),
-    [(0.99, "collapses"), (1.01, "stands")],
-)
+@pytest.mark.parametrize(("ratio", "expected"), [(0.99, "collapses"), (1.01, "stands")])
 def test_a_thin_shallow_arch_is_begun_with_forces(ratio: float, expected: str) -> None:
     """The same arch: the exact limit of its voussoirs is the truth."""
     seen = observe(problem_at(ratio, 30, 0.7, 27), "mujoco", moving=False)

@@ -61,10 +61,7 @@ def test_an_engine_of_ones_own_takes_a_hundred_lines() -> None:
 
 @pytest.mark.parametrize(
     ("ratio", "verdict"),
-    [
-        (0.98, "collapses"),
-        pytest.param(1.02, "stands", marks=pytest.mark.long),
-    ],
+    [(0.98, "collapses"), pytest.param(1.02, "stands", marks=pytest.mark.long)],
 )
 def test_it_agrees_with_limit_analysis_on_an_arch(ratio: float, verdict: str) -> None:
     of = "--alpha", "90", "--mu", "0.7", "--voussoirs", "7", "--ratio", str(ratio)

@@ -18,8 +18,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from running import PROGRAM
-from running import inside as blocksim
+from running import PROGRAM, inside
 from space_cases import NAMES as IN_SPACE
 from space_cases import asked as known_in_space
 
@@ -73,9 +72,7 @@ def verdict(table: Table) -> Verdict:
 
 
 @pytest.mark.parametrize("size", [1.0, 1e-2, 1e-3, 1e-4, 1e-5])
-def test_a_pebble_on_a_ramp_needs_the_same_friction_beside_any_block(
-    size: float,
-) -> None:
+def test_a_pebble_on_a_ramp_needs_the_same_friction_beside_any_block(size: float) -> None:
     found = bracket(structure_of(on_a_ramp(size, 0.5, 0.5)), over="mu", method="limit")
     assert found.limit == pytest.approx(0.5, rel=1e-9)
     assert found.confirmed
@@ -353,9 +350,9 @@ def test_a_proof_in_space_by_command(tmp_path: Path) -> None:
     """Both sides of the tilt at which a tower falls."""
     proof = tmp_path / "proof.json"
     asked = ("bracket", "tower", "--mu", "0.7", "--over", "tilt", "--proof", str(proof))
-    done = blocksim(*asked, "--json")
+    done = inside(*asked, "--json")
     assert json.loads(done.stdout)["proved"] is True
-    found = blocksim("verify", str(proof)).stdout.splitlines()
+    found = inside("verify", str(proof)).stdout.splitlines()
     assert found == [
         f"proved: {each}, 6 blocks and 6 joints" for each in ("collapses", "stands")
     ]
@@ -366,17 +363,17 @@ def test_the_commands(tmp_path: Path) -> None:
     """A proof is written, checked by the command and by the file alone, refused if spoilt."""
     file, proof = tmp_path / "pebble.json", tmp_path / "proof.json"
     file.write_text(json.dumps(on_a_ramp(1e-3, 0.5, 0.6)))
-    done = blocksim("check", str(file), "--proof", str(proof), "--json")
+    done = inside("check", str(file), "--proof", str(proof), "--json")
     assert json.loads(done.stdout)["proved"] is True
     alone = [sys.executable, "-I", verify_module.__file__, str(proof)]
     for command in ([*PROGRAM, "verify", str(proof)], alone):
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         assert done.stdout == "proved: stands, 2 blocks and 2 joints\n", done.stderr
     proof.write_text(proof.read_text().replace("pebble", "people"))
-    done = blocksim("verify", str(proof))
+    done = inside("verify", str(proof))
     assert done.returncode == 2
     assert "the file was changed" in done.stderr
-    refused = blocksim("check", str(file), "--method", "direct", "--proof", str(proof))
+    refused = inside("check", str(file), "--method", "direct", "--proof", str(proof))
     assert refused.returncode == 2
     assert "limit proves" in refused.stderr
 
@@ -396,16 +393,16 @@ def test_both_sides_of_a_change_are_proved(
     table = on_a_ramp(1e-3, 0.5, 0.6)
     file.write_text(json.dumps(table | {"live": loads}))
     asked = ("bracket", str(file), "--over", over, "--proof", str(proof), "--json")
-    assert json.loads(blocksim(*asked).stdout)["proved"] is True
-    done = blocksim("verify", str(proof))
+    assert json.loads(inside(*asked).stdout)["proved"] is True
+    done = inside("verify", str(proof))
     claims = [line.split(",")[0] for line in done.stdout.splitlines()]
     assert claims == ["proved: collapses", "proved: stands"], done.stderr
     falls, stands = json.loads(proof.read_text())
     spoilt_one = {**stands, "problem": falls["problem"]}
     proof.write_text(json.dumps([falls, {**spoilt_one, "sha256": seal(spoilt_one)}]))
-    assert blocksim("verify", str(proof)).returncode == 2
+    assert inside("verify", str(proof)).returncode == 2
     proof.write_text("[]")
-    assert blocksim("verify", str(proof)).returncode == 2
+    assert inside("verify", str(proof)).returncode == 2
 
 
 @pytest.mark.parametrize("voussoirs", [7, 27])

@@ -22,10 +22,7 @@ LEANING = {
     for name, known in EVERY.items()
     if not (known.problem.in_space or known.problem.is_planar)
 }
-ACROSS_THE_LINE = {
-    "fig20_junction_point": {Mode.RRS},
-    "fig25_low_overturning_152": {Mode.RRR},
-}
+ACROSS_THE_LINE = {"fig20_junction_point": {Mode.RRS}, "fig25_low_overturning_152": {Mode.RRR}}
 """Where a region ends, voussoirs show the mode of the next: they see a hinge half a joint
 spacing off, here farther than the region is wide."""
 

@@ -305,8 +305,4 @@ def test_a_folder_keeps_answers_and_processes_share_the_work(tmp_path: Path) -> 
 
 def test_amplitudes_have_to_grow() -> None:
     with pytest.raises(InputError, match="growing"):
-        fragility(
-            structure_of(scenes(NAME)[0]),
-            {"a": pulse(1.0)},
-            [0.2, 0.1],
-        )
+        fragility(structure_of(scenes(NAME)[0]), {"a": pulse(1.0)}, [0.2, 0.1])

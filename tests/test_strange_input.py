@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from running import PROGRAM
-from running import inside as blocksim
+from running import PROGRAM, inside
 from strangers import packed
 
 from blocksim import Arch, Block, CircularArch, InputError, Load, load_recording
@@ -118,7 +117,7 @@ def test_only_regular_files_are_read_and_nothing_is_waited_for(
         words = ["check", name, "--mu", "0.7"]
     # That memory cannot be read at all; readers of drawings and recordings look at ends first.
     unread = what == "memory" and ending in {"toml", "json", "svg", "csv"}
-    one_line(blocksim(*words), code=74 if unread else 2)
+    one_line(inside(*words), code=74 if unread else 2)
     assert [each.name for each in tmp_path.iterdir()] == [path.name]
 
 
@@ -153,7 +152,7 @@ def test_shaking_of_any_length_is_refused_without_warnings(tmp_path: Path) -> No
     path = tmp_path / "a.csv"
     for rows in ("-1e308,0\n1e308,1", "0,0\n1,1e308", "0,1e308\n1,-1e308", "0," + "1" * 300):
         path.write_text(f"time_s,acceleration_g\n{rows}\n")
-        one_line(blocksim("check", *ARCH, "--shake", str(path)))
+        one_line(inside("check", *ARCH, "--shake", str(path)))
 
 
 # Recordings.
@@ -234,7 +233,7 @@ def test_a_film_is_bounded_before_it_is_begun(kind: str, tmp_path: Path) -> None
     header, times, poses = _good()
     (tmp_path / "a.npz").write_bytes(packed(header, times * 10, poses))
     out = str(tmp_path / f"o.{kind}")
-    done = blocksim("render", str(tmp_path / "a.npz"), "--out", out, "--slow", "1000")
+    done = inside("render", str(tmp_path / "a.npz"), "--out", out, "--slow", "1000")
     assert "must be at most 600 s long: less slow, or of a shorter recording" in one_line(done)
     assert [each.name for each in tmp_path.iterdir()] == ["a.npz"]
 
@@ -265,7 +264,7 @@ def test_a_table_of_a_long_recording_is_refused(
     for kind in ("csv", "json", "glb", "gltf"):
         out = str(tmp_path / f"o.{kind}")
         assert "at most 10 as" in one_line(
-            blocksim("render", str(tmp_path / "a.npz"), "--out", out)
+            inside("render", str(tmp_path / "a.npz"), "--out", out)
         )
 
 
@@ -288,7 +287,7 @@ def test_names_of_files_that_cannot_be(
 ) -> None:
     if command[0] == "simulate":
         name = name.replace(".png", ".npz")
-    one_line(blocksim(*command, "--out", name, cwd=tmp_path))
+    one_line(inside(*command, "--out", name, cwd=tmp_path))
     assert list(tmp_path.iterdir()) == []
 
 
@@ -296,7 +295,7 @@ def test_names_of_files_that_cannot_be(
 def test_a_folder_may_be_named_with_a_slash(tmp_path: Path) -> None:
     design = tmp_path / "a.toml"
     design.write_text('half_angle_deg = [90]\nmu = [0.7]\nmethod = "limit"\n')
-    done = blocksim("sweep", str(design), "--out", f"{tmp_path}/rows/", "--workers", "1")
+    done = inside("sweep", str(design), "--out", f"{tmp_path}/rows/", "--workers", "1")
     assert done.returncode == 0
     assert list((tmp_path / "rows").glob("rows-*.jsonl"))
 

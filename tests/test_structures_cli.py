@@ -8,8 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from running import answered
-from running import inside as blocksim
+from running import answered, inside
 
 from blocksim import load_recording
 
@@ -108,7 +107,7 @@ def test_no_answer_is_beyond_the_range_given(
 
 def test_a_structure_is_let_go_and_read_back(stack: str, tmp_path: Path) -> None:
     out = tmp_path / "run.npz"
-    done = blocksim("simulate", stack, "--tilt", "25", "--seconds", "0.3", "--out", str(out))
+    done = inside("simulate", stack, "--tilt", "25", "--seconds", "0.3", "--out", str(out))
     assert done.returncode == 0, done.stderr
     found = load_recording(out)
     assert found.problem.title == "Three blocks"
@@ -156,9 +155,9 @@ def test_least_friction_of_a_wedge_beside_a_block_on_a_slope(tmp_path: Path) -> 
 def test_options_of_an_arch_are_parameters_of_its_kind(
     options: list[str], alike: list[str]
 ) -> None:
-    by_option = blocksim("check", "circular-arch", "--mu", "0.7", *options, "--json")
+    by_option = inside("check", "circular-arch", "--mu", "0.7", *options, "--json")
     by_name = [word for each in alike for word in ("--with", each)]
-    by_parameter = blocksim("check", "circular-arch", "--mu", "0.7", *by_name, "--json")
+    by_parameter = inside("check", "circular-arch", "--mu", "0.7", *by_name, "--json")
     ours, theirs = json.loads(by_option.stdout), json.loads(by_parameter.stdout)
     assert ours["verdict"] == theirs["verdict"]
     assert ours["arch"] == theirs["arch"]

@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from arches import least
-from running import answered, csv_rows
-from running import inside as blocksim
+from running import answered, csv_rows, inside
 from scipy.optimize import brentq
 
 from blocksim import Arch, CircularArch, InputError, Problem, check, equilibrium, structure_of
@@ -292,7 +291,7 @@ def test_the_command_says_it() -> None:
     asked = ("--method", "limit", "--must-rest")
     wide = ("--alpha", "155", "--mu", "3", "--voussoirs", "3")
     narrow = ("--alpha", "60", "--mu", "0.9", "--voussoirs", "4")
-    words = blocksim("check", *wide, "--ratio", "1.05", *asked).stdout
+    words = inside("check", *wide, "--ratio", "1.05", *asked).stdout
     assert (
         "  rest    it can rest, and friction may let it move as well; let go along that motion"
         in words
