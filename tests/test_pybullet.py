@@ -187,7 +187,7 @@ def test_an_arch_that_falls_stays_symmetric_and_falls_as_pymunk_has_it() -> None
 
 
 def test_blocks_let_go_start_neither_early_nor_late() -> None:
-    """A slab slides by g (sin phi - mu cos phi) t^2 / 2; an arch falls as in pymunk.
+    """A slab slides by g (sin phi - mu cos phi) t^2 / 2; an arch falls as in `direct`.
 
     With a whole step's velocity from the first step on both were half a step early.
     """
@@ -197,12 +197,12 @@ def test_blocks_let_go_start_neither_early_nor_late() -> None:
     slides = simulate(slope, method="pybullet", duration=1.0)
     pull = math.sin(math.pi / 6) - 0.2 * math.cos(math.pi / 6)
     assert slides.displacement == pytest.approx(pull * slides.times**2 / 2, rel=1e-4, abs=1e-6)
-    arch = CircularArch.of(Arch(half_angle=math.pi / 2, eta=0.1, voussoirs=13), 0.7).problem()
-    one, other = (
-        simulate(arch, method=method, duration=1.5) for method in ("pybullet", "pymunk")
-    )
+    arch = CircularArch.of(Arch(half_angle=math.pi / 2, eta=0.07, voussoirs=7), 0.7).problem()
+    truth = simulate(arch, method="direct", duration=1.5)
+    # Its error is of first order: at a quarter of the usual step little is left.
+    seen = simulate(arch, method="pybullet", duration=1.5, settings={"step": 0.004})
     for level in (2e-3, 1e-2, 5e-2):
         early, late = (
-            np.interp(level**0.5, each.displacement**0.5, each.times) for each in (one, other)
+            np.interp(level**0.5, each.displacement**0.5, each.times) for each in (seen, truth)
         )
-        assert early == pytest.approx(late, rel=0.005)
+        assert early == pytest.approx(late, rel=1e-3)
