@@ -94,6 +94,12 @@ def test_cases_in_space_are_asked_once(tmp_path: Path) -> None:
         assert len(list(csv.DictReader(file))) == 5
 
 
+def test_an_arch_is_asked_beside_another_program(tmp_path: Path) -> None:
+    told = study("beside_cra").main(tmp_path, quick=True)
+    assert "| arch, 15 | +1% | limit | stands |" in told
+    assert "| arch, 15 | -1% | limit | collapses |" in told
+
+
 @pytest.mark.long
 def test_random_assemblies_are_enclosed(tmp_path: Path) -> None:
     """One of each family: cut, leaning, a vault."""

@@ -13,7 +13,7 @@ from space_cases import GROUND, NAMES, asked, box, case, problem_of
 from worlds import observe
 
 import blocksim
-from blocksim import Dome, Problem, Solid, Verdict, extruded, structure_of
+from blocksim import Dome, Load, Problem, Solid, Verdict, extruded, structure_of
 from blocksim.engines.direct import USUAL
 from blocksim.engines.solid.meeting import Points
 from blocksim.engines.solid.memory import Borne
@@ -26,6 +26,20 @@ def test_direct_tells_a_case_a_thousandth_to_both_sides(name: str) -> None:
     """By the onset test; the study `space_cases` asks about all 55."""
     for problem, verdict in asked(name, 0.001):
         assert observe(problem, "direct", moving=False).verdict is verdict
+
+
+@pytest.mark.parametrize(("sides", "mu"), [(4, 0.17), (5, 0.285), (12, 0.6)])
+def test_a_prism_that_can_rest_as_well_as_turn_rests(sides: int, mu: float) -> None:
+    """A plate twisted 0.1 % below its limit: Coulomb's law allows both."""
+    turns = 2 * np.pi * np.arange(sides) / sides
+    base = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    plate = np.concatenate([np.column_stack([base, np.full(sides, z)]) for z in (0, 0.2)])
+    solids = [Solid(parts=(GROUND,), fixed=True), Solid(parts=(plate,))]
+    push = Load(force=np.array([0.0, 1, 0]), blocks=(0,), point=np.array([3.0, 0, 0.1]))
+    problem = problem_of(solids, mu, live=(push,))
+    most = blocksim.collapse(problem).load_factor
+    below = problem.with_load(0.999 * most)
+    assert blocksim.check(below, method="direct").verdict is Verdict.STANDS
 
 
 @pytest.mark.long

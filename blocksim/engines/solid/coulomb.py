@@ -13,7 +13,7 @@ with what contacts did in the last step, or with forces of a cone programme, in 
 by mu times itself, less a guess of that. From nothing no slip is guessed: of rest and motion,
 where Coulomb's law allows both, that finds rest. Else they begin where alternating directions
 lead, which come near a solution from anywhere, of redundant contacts and of wedges, too. What
-these do not solve from nothing begins where slip settles (`dilation`), with soft springs first.
+these do not solve from nothing begins where slip settles (`dilation`).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from blocksim.engines.solid.step import Answer, Step, projected
 STIFF = 1e5
 """Springs over the mean mass."""
 STIFFER = 1e2, 1e3, 1e4, STIFF
-"""The same in turn from a guess near a motion: soft ones are not lost where blocks jam."""
+"""The same in turn from a guess: soft ones are not lost near the limit, or where blocks jam."""
 ROUNDS, TRIES = 25, 60
 """Most times that springs follow, and most of Newton's steps for each."""
 BRIEFLY = 25
@@ -77,9 +77,9 @@ def solve(step: Step, last: Array | None, turns: int = TURNS) -> Answer:
             best = _gone_on(step, last, briefly=briefly)
     guesses = _guesses(step, last, turns, briefly=briefly) if best.residual > enough else ()
     enough = LAWFUL if briefly else enough
-    for guess, springs in guesses:
+    for guess in guesses:
         forces = guess
-        for stiff in springs:
+        for stiff in STIFFER if briefly else (STIFF, *STIFFER):
             found = _followed(step, forces, stiff=stiff, briefly=briefly)
             forces = found.forces
             if found.residual < best.residual:
@@ -104,26 +104,23 @@ def _as_last_resort(step: Step, best: Answer) -> Answer:
     return Answer(x, forces, max(best.residual, step.residual(x, forces)))
 
 
-def _guesses(
-    step: Step, last: Array | None, turns: int, *, briefly: bool
-) -> Iterator[tuple[Array, tuple[float, ...]]]:
-    """Give forces, the likeliest and cheapest first, and the springs that follow them."""
-    springs = STIFFER if briefly else (STIFF,)
+def _guesses(step: Step, last: Array | None, turns: int, *, briefly: bool) -> Iterator[Array]:
+    """Give forces to begin with, the likeliest and cheapest first."""
     opening = dilating(step, slip_of(step.drift), IN_MOTION) if briefly else dilating(step)
     if opening is not None:
-        yield opening, springs
+        yield opening
     if not briefly:
         # Of rest near its limit the forces lie on the cones; with less friction within.
         less = dilating(replace(step, friction=LESS * step.friction))
         if less is not None:
-            yield less, springs
+            yield less
     # Near the limit of rest, which is not to be had by now, no forces lead to motion.
     begun = last if briefly and last is not None else np.zeros_like(step.drift)
     forces = begun
     for forces in _alternated(step, begun, turns):
-        yield forces, springs
+        yield forces
     if last is None:
-        yield settled(step, forces), STIFFER
+        yield settled(step, forces)
 
 
 def _alternated(step: Step, p: Array, turns: int) -> Iterator[Array]:
