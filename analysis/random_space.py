@@ -16,6 +16,7 @@ that are cut the area of all joints is that of the cuts.
 
 from __future__ import annotations
 
+import json
 import math
 from collections import Counter
 from collections.abc import Callable
@@ -30,6 +31,8 @@ import blocksim
 from analysis.command import run
 from analysis.rows import write_rows
 from blocksim import Load, Problem, Solid, Verdict
+from blocksim.limit.proof import Proof, proof_record
+from blocksim.verify import verify
 from tests.space_cases import enclosed, problem_of, rotation
 
 Draw = np.random.Generator
@@ -61,6 +64,8 @@ class Row:
     factor, below, above, direct_below, direct_above, area : str
         "right", "open", "false", or nothing where it was not asked: the load factor, verdicts
         beside it, those of `direct`, and the area of the joints.
+    proof_below, proof_above : str
+        "accepted" or "refused" by `blocksim.verify`, "none" where a verdict has no proof.
     """
 
     seed: int
@@ -74,6 +79,8 @@ class Row:
     factor: str
     below: str = ""
     above: str = ""
+    proof_below: str = ""
+    proof_above: str = ""
     direct_below: str = ""
     direct_above: str = ""
     area: str = ""
@@ -258,6 +265,15 @@ def judged(verdict: Verdict, known: Verdict) -> str:
     return "right" if verdict is known else "false"
 
 
+def checked(proof: Proof) -> str:
+    """Say whether the checker accepts a proof, as it is written to a file."""
+    try:
+        verify(json.loads(json.dumps(proof_record(proof))))
+    except ValueError:
+        return "refused"
+    return "accepted"
+
+
 def asked(seed: int) -> Row:
     """Ask all about one problem."""
     problem, family, area = drawn(seed)
@@ -290,7 +306,9 @@ def asked(seed: int) -> Row:
         if (name == "below" and at <= least) or abs(at) > 1e6:
             continue
         there = problem.with_load(at)
-        row = replace(row, **{name: judged(blocksim.check(there).verdict, known)})
+        answer = blocksim.check(there)
+        proof = "none" if answer.proof is None else checked(answer.proof)
+        row = replace(row, **{name: judged(answer.verdict, known), f"proof_{name}": proof})
         if seed in range(0, PROBLEMS, DIRECT) and len(assembly.blocks) < 16:
             seen = blocksim.check(there, method="direct").verdict
             row = replace(row, **{f"direct_{name}": judged(seen, known)})

@@ -13,7 +13,7 @@ from space_cases import GROUND, NAMES, asked, box, case, problem_of
 from worlds import observe
 
 import blocksim
-from blocksim import Dome, Load, Problem, Solid, Verdict, extruded, structure_of
+from blocksim import Dome, Load, Problem, SkewArch, Solid, Verdict, extruded, structure_of
 from blocksim.engines.direct import USUAL
 from blocksim.engines.solid.meeting import Points
 from blocksim.engines.solid.memory import Borne
@@ -40,6 +40,18 @@ def test_a_prism_that_can_rest_as_well_as_turn_rests(sides: int, mu: float) -> N
     most = blocksim.collapse(problem).load_factor
     below = problem.with_load(0.999 * most)
     assert blocksim.check(below, method="direct").verdict is Verdict.STANDS
+
+
+def test_an_arch_that_can_rest_as_well_as_slide_is_not_said_to_fall() -> None:
+    """A skew one of four voussoirs, tilted 1 % less than it bears."""
+    arch = SkewArch(radius=0.8211, thickness=0.1714, width=0.4214, half_angle_deg=73.4231,
+                    skew_deg=24.7234, voussoirs=4, friction=0.2587)  # fmt: skip
+    problem = replace(arch.problem(), azimuth=math.radians(-140.4373))
+    most = blocksim.bracket(problem, over="tilt")
+    assert most.proved
+    below = problem.tilted(math.radians(0.99 * most.limit))
+    assert blocksim.check(below).verdict is Verdict.STANDS
+    assert blocksim.check(below, method="direct").verdict is not Verdict.COLLAPSES
 
 
 @pytest.mark.long

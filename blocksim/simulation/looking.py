@@ -11,7 +11,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import overlap_and_slip
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.parting import overlap_and_slip_in_space
-from blocksim.engines.base import FRICTION_CAP, Engine, Settings, World, trusted
+from blocksim.engines.base import Settings, World, trusted
 from blocksim.engines.solid.bodies import Bodies
 from blocksim.engines.solid.dilation import dilating
 from blocksim.engines.solid.stepping import at_rest
@@ -93,10 +93,3 @@ class Looking:
         if not self._in_space or residual is None or math.isinf(settings.residual):
             return trusted(world, settings)
         return residual <= max(SURE * largest, settings.still)
-
-    def is_bounded(self, engine: Engine) -> bool:
-        """Tell whether the engine takes friction as it is: in the plane it has bounds."""
-        if not self._in_space:
-            return bool(np.isfinite(self._problem.friction).all())
-        most = min(engine.most_friction, FRICTION_CAP)
-        return float(self._problem.friction.max(initial=0.0)) <= most

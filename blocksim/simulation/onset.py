@@ -26,8 +26,8 @@ that slides is therefore believed only where no forces exist that would balance 
 arch stands: the forces are not taken on trust. An engine that cannot be given any is undecided.
 So it goes where sweeps run out (from `LATE` on) over what is a mechanism to a thousandth: a
 mode of sliding can take 10^6 sweeps to die away (125.02 deg, mu 0.8594, n = 10).
-Without sliding the answer is unique, and none of this is asked; nor is it of an engine that
-looks for rest first.
+Without sliding the answer is unique, and none of this is asked; nor is it in the plane of an
+engine that looks for rest first.
 
 Some engines take less friction than was asked for. What rests with less rests with more. What
 falls may owe that to the friction it lacks (a wall of ten blocks, mu inf, 0.1 % below its
@@ -48,6 +48,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from typing import Any, cast
+
+import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
@@ -155,9 +157,10 @@ def onset(world: World, simulation: Simulation[Any], progress: Progress = silent
     may_rest = may_slide = False
     takes = engine.takes_forces and settings.unaided is not None
     helped = begun is not None or not takes
-    # Without bound on friction even an engine that looks for rest can miss it: forces may be
-    # wedged, a thousand times their pressures.
-    unasked = not (engine.finds_rest and look.is_bounded(engine))
+    # Even an engine that looks for rest can miss it: in space, and without bound on friction,
+    # where forces may be wedged, a thousand times their pressures.
+    bounded = bool(np.isfinite(problem.friction).all())
+    unasked = problem.in_space or not (engine.finds_rest and bounded)
     while True:
         accelerations = world.hold(sweeps)
         total += sweeps
