@@ -28,7 +28,7 @@ INPUTS = {
     "continuous": (("render", "--alpha", "90", "--mu", "0.7"), "continuous arch"),
     "structure": (("render", "stack.json"), "stands, by limit"),
     "recording": (("render", "run.npz"), "at rest"),
-    "leaning": (("render", "semicircle_tilted_overturns"), "gravity leans"),
+    "leaning": (("render", "semicircle_tilted_overturns"), "tilted 38.4"),
     "map": (("map",), "friction coefficient"),
     "lines": (("map", "--lines"), "149.156"),
 }

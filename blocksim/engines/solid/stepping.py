@@ -41,7 +41,7 @@ BRIEFLY = 1000
 """Most turns a step is looked for in which nothing closes: often there is none."""
 HALVINGS = 5
 """How often a step that is not solved is halved."""
-NEARER, QUIET = 6, 4
+NEARER, QUIET = 6, 16
 """How often a step is halved to come near to an impact, if so many steps before had none."""
 SHUT, PRESSED = 1e-6, 1e-4
 """Gap up to which a contact that moves slowly is closed, and one that pressed [size]."""
