@@ -193,6 +193,7 @@ def test_a_wall_of_ones_own(page: Any) -> None:
     """A block more, on the keyboard; what is fixed cannot fall; the map is still there."""
     to_own(page)
     page.select_option("#structure", "column")
+    settle(page)
     before = page.locator("#own [data-block]").count()
     page.click("#add")
     assert told(page).startswith("Collapses")  # nothing holds it
