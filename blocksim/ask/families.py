@@ -126,12 +126,12 @@ def family_of(problem: Problem[Any], over: str) -> Family[Any]:
     InputError
         If there is no such parameter, or nothing to multiply.
     """
-    leans = not (problem.in_space or problem.is_planar)
-    if over in (FAMILIES if problem.is_planar else (*IN_SPACE, *["lean"] * leans)):
+    known = families_of(problem)
+    if over in FAMILIES and (problem.is_planar or over in known):
         return FAMILIES[over](problem if over == "lean" else asked_as(problem))
     kind = problem.maker
     if kind is None or over not in kind.bracketed:
-        raise InputError("--over", over, f"one of {', '.join(families_of(problem))}")
+        raise InputError("--over", over, f"one of {', '.join(known)}")
     return _over_parameter(problem, kind, over)
 
 

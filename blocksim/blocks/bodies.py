@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
 from blocksim.common.later import csgraph, sparse
+
+if TYPE_CHECKING:
+    from blocksim.blocks.space.assembly import SpatialAssembly
 
 Owner = NDArray[np.int64]
 """The body each block is part of, (blocks,); bodies are numbered from 0."""
@@ -48,6 +53,26 @@ def connected(count: int, one: ArrayLike, other: ArrayLike) -> Owner:
     pairs = np.asarray(one), np.asarray(other)
     graph = sparse.coo_array((np.ones(len(pairs[0])), pairs), shape=(count, count))
     return csgraph.connected_components(graph, directed=False)[1].astype(np.int64)
+
+
+def bodies_of(
+    assembly: Assembly | SpatialAssembly, ways: Array, turns: Array, least: float
+) -> Owner:
+    """Return the body of each block, of those that no joint parts; `SUPPORT` at rest.
+
+    `ways`, `turns`, (joints,): How fast the sides of each joint part, and turn apart.
+    `least`: Share of the fastest up to which blocks move as one.
+    """
+    count, sides = len(assembly.blocks), assembly.sides
+    reach = np.append(assembly.reach / assembly.size, math.inf)[sides].min(axis=0)
+    apart = np.maximum(ways, turns * reach)
+    together = apart <= least * float(apart.max())
+    one, other = np.where(sides == SUPPORT, count, sides)[:, together]
+    label = connected(count + 1, one, other)
+    free = label[:-1] != label[-1]
+    owner = np.full(count, SUPPORT, dtype=np.int64)
+    owner[free] = np.unique(label[:-1][free], return_inverse=True)[1]
+    return owner
 
 
 def parting(assembly: Assembly, rates: Array) -> tuple[Array, Array]:

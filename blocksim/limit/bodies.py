@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.blocks.bodies import connected, parting
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.bodies import bodies_of, parting
 from blocksim.blocks.problem import Problem
 from blocksim.common.conic import solved_cones
 from blocksim.common.later import sparse
@@ -26,17 +26,9 @@ SHARE = 0.25
 
 def alike(problem: Problem, cones: Cones, rates: Array) -> list[int]:
     """Return the body of each block, of those that rates do not part; `SUPPORT` at rest."""
-    assembly, count = problem.assembly, len(rates)
-    ways, turns = parting(assembly, rates)
-    reach = np.append(assembly.reach / assembly.size, math.inf)[assembly.sides].min(axis=0)
-    apart = cones.unit * np.maximum(np.abs(ways).max(axis=(1, 2)), np.abs(turns) * reach)
-    together = apart <= ALIKE * float(apart.max())
-    one, other = np.where(assembly.sides == SUPPORT, count, assembly.sides)[:, together]
-    label = connected(count + 1, one, other)
-    free = label[:-1] != label[-1]
-    owner = np.full(count, SUPPORT, dtype=np.int64)
-    owner[free] = np.unique(label[:-1][free], return_inverse=True)[1]
-    return owner.tolist()
+    ways, turns = parting(problem.assembly, rates)
+    ways = cones.unit * np.abs(ways).max(axis=(1, 2))
+    return bodies_of(problem.assembly, ways, cones.unit * np.abs(turns), ALIKE).tolist()
 
 
 def widened(problem: Problem, cones: Cones, rates: Array) -> Array | None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import Array
+from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
 from blocksim.blocks.rows import column
 
@@ -97,6 +97,16 @@ class Exact:
             for at, each in enumerate(acts):
                 pull[block][at] += each
 
+    def moving(
+        self, joint: int, rates: Sequence[list[int]]
+    ) -> list[tuple[list[int], Point, int]]:
+        """Return rates, centre and sense (1 of the one after) of blocks at a joint that move."""
+        return [
+            (rates[side], self.centres[side], sign)
+            for side, sign in zip(self.sides[joint], (-1, 1), strict=True)
+            if side != SUPPORT and any(rates[side])
+        ]
+
     @cached_property
     def allowed(self) -> list[list[int]]:
         """What may be left on each block, in units of force, and of that times the grain."""
@@ -148,7 +158,7 @@ def _ends(problem: Problem[Any]) -> tuple[Array, Array]:
     joints = problem.assembly.joints
     if problem.in_space:
         counts = np.array([len(each.points) for each in joints], dtype=int)
-        return np.concatenate([np.zeros((0, 3)), *(each.points for each in joints)]), counts
+        return problem.assembly.points, counts
     ends = np.array([column(joints, "inner"), column(joints, "outer")])
     return ends.swapaxes(0, 1).reshape(-1, 2), np.full(len(joints), 2)
 

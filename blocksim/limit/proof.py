@@ -260,10 +260,8 @@ def _within(exact: Exact, parts: Sequence[Number]) -> bool:
 
 def _lawful(exact: Exact, rates: list[list[int]]) -> bool:
     """Tell whether no joint closes, or slips without opening."""
-    for joint, sides in enumerate(exact.sides):
-        moved = [(rates[side], exact.centres[side], sign)
-                 for side, sign in zip(sides, (-1, 1), strict=True)
-                 if side != SUPPORT and any(rates[side])]  # fmt: skip
+    for joint in range(len(exact.sides)):
+        moved = exact.moving(joint, rates)
         if not moved:
             continue
         (p, q), mu = exact.normals[joint], exact.friction[joint]

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.blocks.bodies import Owner, connected
+from blocksim.blocks.bodies import Owner, bodies_of
 from blocksim.limit.space.cones import most
 from blocksim.limit.space.contacts import LIFTS, Contacts
 
@@ -19,25 +19,17 @@ LEAST = 1e-14
 """Rate at which joints are to open where nothing is left over."""
 
 
-def bodies_of(contacts: Contacts, rates: Array) -> Owner:
+def alike(contacts: Contacts, rates: Array) -> Owner:
     """Return the body of each block, of those that rates do not part; `SUPPORT` at rest.
 
     `rates`, (6 blocks,).
     """
     assembly = contacts.problem.assembly
-    count, sides = len(assembly.blocks), assembly.sides
-    ways = np.abs((contacts.matrix.T @ rates).reshape(-1, 3)).max(axis=1)
-    turns = np.vstack([rates.reshape(-1, 6)[:, 3:], np.zeros(3)])[sides]
-    reach = np.append(assembly.reach / assembly.size, np.inf)[sides].min(axis=0)
-    apart = np.abs(turns[1] - turns[0]).max(axis=1) * reach
-    np.maximum.at(apart, contacts.joint, ways)
-    together = apart <= ALIKE * float(apart.max())
-    one, other = np.where(sides == SUPPORT, count, sides)[:, together]
-    label = connected(count + 1, one, other)
-    free = label[:-1] != label[-1]
-    owner = np.full(count, SUPPORT, dtype=np.int64)
-    owner[free] = np.unique(label[:-1][free], return_inverse=True)[1]
-    return owner
+    turned = np.vstack([rates.reshape(-1, 6)[:, 3:], np.zeros(3)])[assembly.sides]
+    ways = np.zeros(len(assembly.joints))
+    at_points = np.abs((contacts.matrix.T @ rates).reshape(-1, 3)).max(axis=1)
+    np.maximum.at(ways, contacts.joint, at_points)
+    return bodies_of(assembly, ways, np.abs(turned[1] - turned[0]).max(axis=1), ALIKE)
 
 
 def opened_between(
@@ -46,7 +38,7 @@ def opened_between(
     """Give what `Contacts.opened` does, of bodies: points within one stay closed.
 
     `pull`, `rates`, (6 blocks,).
-    `owner`, (blocks,): As of `bodies_of`.
+    `owner`, (blocks,): As of `alike`.
     """
     of = np.append(owner, SUPPORT)[contacts.problem.assembly.sides]
     between = np.flatnonzero((of[0] != of[1])[contacts.joint])

@@ -57,7 +57,9 @@ def proof_of_rest(exact: Exact, contacts: Contacts, forces: Array) -> Proof | No
     times = int(exact.force / unit)
     left: list[Wrench] = [[times * each for each in pull] for pull in exact.pull]
     for joint, each in enumerate(stored):
-        _act(exact, left, joint, each)
+        for block in exact.sides[joint]:
+            if block != SUPPORT:
+                left[block] = _sum(left[block], _acting(exact, joint, each, block))
     tolerance = NOTHING
     found = _handed_on(exact, contacts, forces, stored, left)
     if found is None or not _within(exact, found):
@@ -113,15 +115,14 @@ def _stored(exact: Exact, contacts: Contacts, forces: Array) -> tuple[Forces, Fr
     return found, unit
 
 
-def _act(exact: Exact, left: list[Wrench], joint: int, forces: Sequence[Force]) -> None:
-    """Add forces at the points of a joint to what is left on the blocks beside it."""
-    for block, sign in zip(exact.sides[joint], (-1, 1), strict=True):
-        if block == SUPPORT:
-            continue
-        for point, force in zip(exact.ends[joint], forces, strict=True):
-            turn = moment(apart(point, exact.centres[block]), force)
-            for at, each in enumerate((*force, *turn)):
-                left[block][at] += sign * each
+def _acting(exact: Exact, joint: int, forces: Sequence[Force], block: int) -> Wrench:
+    """Return what forces at the points of a joint do to a block beside it."""
+    sign = 1 if exact.sides[joint][1] == block else -1
+    total: Wrench = [0] * 6
+    for point, force in zip(exact.ends[joint], forces, strict=True):
+        turn = moment(apart(point, exact.centres[block]), force)
+        total = _sum(total, [sign * each for each in (*force, *turn)])
+    return total
 
 
 def _handed_on(
@@ -152,14 +153,10 @@ def _handed_on(
         if more is None:
             return None
         for joint, each in more.items():
-            (before, after), centre = exact.sides[joint], exact.centres[block]
+            before, after = exact.sides[joint]
             other = before if after == block else after
             if other != SUPPORT:
-                handed = wrench if len(more) == 1 else _wrench(exact, joint, each, block)
-                arm = apart(centre, exact.centres[other])
-                turn = moment(arm, handed[:3])
-                handed = [*handed[:3], *_sum(handed[3:], turn)]
-                left[other] = _sum(left[other], handed)
+                left[other] = _sum(left[other], _acting(exact, joint, each, other))
             old: list[Force] = added.get(joint, [[0, 0, 0]] * len(each))
             added[joint] = [*map(_sum, old, each)]
     for joint, each in added.items():
@@ -210,16 +207,6 @@ def _borne(
     return found
 
 
-def _wrench(exact: Exact, joint: int, forces: Sequence[Force], block: int) -> Wrench:
-    """Return what forces at the points of a joint take off a block."""
-    sign = -1 if exact.sides[joint][1] == block else 1
-    total: Wrench = [NOTHING] * 6
-    for point, force in zip(exact.ends[joint], forces, strict=True):
-        turn = moment(apart(point, exact.centres[block]), force)
-        total = _sum(total, [sign * each for each in (*force, *turn)])
-    return total
-
-
 def _sum(one: Sequence[Number], other: Sequence[Number]) -> list[Number]:
     return [p + q for p, q in zip(one, other, strict=True)]
 
@@ -236,10 +223,8 @@ def _within(exact: Exact, forces: Forces) -> bool:
 
 def _lawful(exact: Exact, motion: list[list[int]]) -> bool:
     """Tell whether no point closes, or slips without opening."""
-    for joint, sides in enumerate(exact.sides):
-        moved = [(motion[side], exact.centres[side], sign)
-                 for side, sign in zip(sides, (-1, 1), strict=True)
-                 if side != SUPPORT and any(motion[side])]  # fmt: skip
+    for joint in range(len(exact.sides)):
+        moved = exact.moving(joint, motion)
         n, mu = exact.normals[joint], exact.friction[joint]
         for point in exact.ends[joint] if moved else ():
             way: list[int] = [0, 0, 0]

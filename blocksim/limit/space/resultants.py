@@ -23,7 +23,7 @@ def resultants_in_space(problem: Problem[SpatialAssembly], forces: Array) -> Res
 
     sums, press = total(forces), np.maximum(forces[:, 0], 0.0)
     press = np.where(total(press)[points.joint] > 0, press, 1.0)
-    places = np.concatenate([each.points for each in joints])
+    places = problem.assembly.points
     most, unknown = problem.friction * sums[:, 0], np.full(len(joints), math.nan)
     rubs = total(np.hypot(forces[:, 1], forces[:, 2]))
     return Resultants(

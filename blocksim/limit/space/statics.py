@@ -19,7 +19,7 @@ from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.limit.exact import Exact
 from blocksim.limit.proof import Proof
 from blocksim.limit.resultants import Resultants
-from blocksim.limit.space.bodies import bodies_of, opened_between
+from blocksim.limit.space.bodies import alike, opened_between
 from blocksim.limit.space.cones import Answer
 from blocksim.limit.space.contacts import Contacts, solved
 from blocksim.limit.space.proof import proof_of_fall, proof_of_rest
@@ -120,7 +120,7 @@ class SpatialEquilibrium:
         for rates in chain([held], contacts.opened(pull, held)):
             if (found := proof_of_fall(exact, rates)) is not None:
                 return found
-        owner = bodies_of(contacts, held)
+        owner = alike(contacts, held)
         for rates in opened_between(contacts, pull, held, owner):
             if (found := proof_of_fall(exact, rates, owner.tolist())) is not None:
                 return found

@@ -172,7 +172,7 @@ class _Seen:
 
     def __init__(self, contacts: JointPoints, pulls: tuple[Array, ...]) -> None:
         assembly = contacts.problem.assembly
-        places = np.concatenate([each.points for each in assembly.joints]) / assembly.size
+        places = assembly.points / assembly.size
         middle = places.mean(axis=0)
         self._contacts, self._places = contacts, places - middle
         self._centres = assembly.centres / assembly.size - middle
