@@ -100,7 +100,7 @@ class Exact:
     def moving(
         self, joint: int, rates: Sequence[list[int]]
     ) -> list[tuple[list[int], Point, int]]:
-        """Return rates, centre and sense (1 of the one after) of blocks at a joint that move."""
+        """Return rates, centre and sense, 1 of `after`, of blocks at a joint that move."""
         return [
             (rates[side], self.centres[side], sign)
             for side, sign in zip(self.sides[joint], (-1, 1), strict=True)
