@@ -64,15 +64,8 @@ def cases(*, quick: bool) -> Iterator[tuple[Asked, Problem]]:
             yield (name, "push", side), pushed.with_load(share * factor)
     for name in QUICK if quick else names():
         for question in questions(name):
-            value, size = question.expected, abs(question.expected) or 1.0
-            for side, sense in (("inside", 1.0), ("outside", -1.0)):
-                stands = question.name == "stands"
-                if (stands and bool(value) != (side == "inside")) or (
-                    question.name == "least friction" and value == 0
-                ):
-                    continue
-                at = value + sense * COARSE * size * question.inside
-                yield (name, question.name, side), question.at(0.0 if stands else at)
+            for side, problem in question.sides(COARSE).items():
+                yield (name, question.name, side), problem
 
 
 def ask(asked: Asked, *, problems: dict[Asked, Problem], engine: str, held: bool) -> Row:

@@ -15,21 +15,21 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, fields, replace
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, cast
-
-from scipy.optimize import bisect
 
 from analysis.command import run
 from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
-from blocksim import InputError, Load, Problem, Verdict, collapse, equilibrium
+from blocksim import InputError, Problem, Verdict, equilibrium
+from blocksim.ask.families import Family, family_of
 from blocksim.ask.methods import choose
 from blocksim.blocks.structure import structure_of
 from blocksim.simulation.observation import observe
+from tests.images import mirrored
 from tests.structure_cases import case, names, scenes
 
 MOST, OTHERS = 120, 70
@@ -38,8 +38,6 @@ ASIDE, COARSE = 1e-3, 1e-2
 """How far from the value they are asked: relative, or absolute where the value is 0."""
 REFUSED = "refused"
 """What stands for the answer to what an engine does not take."""
-FINEST = 1e-9
-"""To which least friction is found."""
 OTHERWISE = {"compas_cra_bridge"}
 """Whose least friction was found of joints read in another way: 0.0696 against 0.755."""
 QUICK = (
@@ -56,98 +54,52 @@ QUICK = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class Line:
-    """One question.
-
-    Parameters
-    ----------
-    case : str
-    question : str
-    expected, limit : float
-        The value, and that of limit analysis; 1 and 0 for whether it stands.
-    error : float
-        Of limit analysis, relative; absolute where the value is 0.
-    inside, outside : str
-        What the engine says to either side; of `stands` one of them. Empty where it was
-        not asked.
-    seconds : float
-        Processor time of the engine.
-    """
-
-    case: str
-    question: str
-    expected: float
-    limit: float
-    error: float
-    inside: str
-    outside: str
-    seconds: float
-
-    @property
-    def false(self) -> int:
-        """Answers of the engine that are wrong."""
-        return (self.inside == Verdict.COLLAPSES) + (self.outside == Verdict.STANDS)
-
-    @property
-    def undecided(self) -> int:
-        """Answers of the engine that are none."""
-        return [self.inside, self.outside].count(Verdict.UNDECIDED)
-
-
-@dataclass(frozen=True)
-class Result:
-    """All questions to an engine, and headline numbers."""
-
-    lines: tuple[Line, ...]
-    engine: str
-
-    @property
-    def worst_error(self) -> float:
-        """Of limit analysis."""
-        return max(line.error for line in self.lines)
-
-    @property
-    def asked(self) -> int:
-        """Answers of the engine."""
-        return sum(bool(line.inside) + bool(line.outside) for line in self.lines)
-
-    @property
-    def false(self) -> int:
-        """Of them, how many are wrong."""
-        return sum(line.false for line in self.lines)
-
-    @property
-    def undecided(self) -> int:
-        """Of them, how many are none."""
-        return sum(line.undecided for line in self.lines)
-
-    @property
-    def refused(self) -> int:
-        """Of them, how many are of what the engine does not take."""
-        return sum([line.inside, line.outside].count(REFUSED) for line in self.lines)
-
-
-@dataclass(frozen=True, kw_only=True)
 class Question:
-    """A family of problems over one parameter, which stand up to a value or from it on.
+    """What is known of a problem: whether it stands, or up to which value, or from which on.
 
     Parameters
     ----------
     name : str
     expected : float
-    exact : callable
-        Returns the value by limit analysis.
-    at : callable
-        Takes a value and returns the problem.
-    inside : float
-        Sense in which it stands: -1 below the value, 1 above it.
+        The value; 1 or 0 for whether it stands.
+    problem : Problem
+    family : Family or None
+        Over the parameter; None of whether it stands.
     """
 
     name: str
     expected: float
-    exact: Callable[[], float]
-    at: Callable[[float], Problem]
-    inside: float = -1.0
+    problem: Problem
+    family: Family | None = None
+
+    @property
+    def inside(self) -> float:
+        """Sense in which it stands: -1 below the value, 1 above it."""
+        return 1.0 if self.family is not None and self.family.stands == "high" else -1.0
+
+    def at(self, value: float) -> Problem:
+        """Return the problem at a value."""
+        return self.problem if self.family is None else self.family.at(value)
+
+    def sides(self, off: float) -> dict[str, Problem]:
+        """Return what is asked `inside` and `outside` of what stands, by so much of the value.
+
+        Of what has no value it is one of them. No friction is the least there is.
+        """
+        value = self.expected
+        if self.family is None:
+            return {"inside" if value else "outside": self.problem}
+        by = off * (abs(value) or 1.0) * self.inside
+        if self.family.name == "mu" and value == 0:
+            return {"inside": self.at(value)}
+        return {"inside": self.at(value + by), "outside": self.at(value - by)}
+
+    def exact(self) -> float:
+        """Return the value by limit analysis."""
+        if self.family is None:
+            return float(equilibrium(self.problem).exists)
+        found = self.family.exact()
+        return math.nan if found is None else found
 
 
 def questions(name: str) -> Iterator[Question]:
@@ -187,38 +139,20 @@ def labels(name: str) -> list[bool | None]:
 
 def standing(problem: Problem, *, expected: bool) -> Question:
     """Ask whether it stands as it is."""
-    return Question(
-        name="stands",
-        expected=float(expected),
-        exact=lambda: float(equilibrium(problem).exists),
-        at=lambda _: problem,
-    )
+    return Question(name="stands", expected=float(expected), problem=problem)
 
 
 def loaded(problem: Problem, value: float) -> Question:
     """Ask for the largest factor on the live loads."""
-
-    def exact() -> float:
-        found = collapse(problem).load_factor
-        return math.nan if found is None else found
-
-    return Question(name="load factor", expected=value, exact=exact, at=problem.with_load)
+    family = family_of(problem, "load")
+    return Question(name="load factor", expected=value, problem=problem, family=family)
 
 
 def tilted(problem: Problem, degrees: float, sense: int) -> Question:
-    """Ask for the largest tilt: gravity turned is gravity and a horizontal body force."""
-
-    def exact() -> float:
-        blocks = tuple(range(len(problem.assembly.blocks)))
-        across = Load(force=(sense, 0.0), blocks=blocks, per_weight=True)
-        return math.degrees(math.atan(loaded(replace(problem, live=(across,)), 0.0).exact()))
-
-    return Question(
-        name=f"tilt to the {'right' if sense > 0 else 'left'} [deg]",
-        expected=degrees,
-        exact=exact,
-        at=lambda tilt: problem.tilted(sense * math.radians(tilt)),
-    )
+    """Ask for the largest tilt: to the right, or of its mirror image, which is to the left."""
+    asked, way = (problem, "right") if sense > 0 else (mirrored(problem), "left")
+    name, family = f"tilt to the {way} [deg]", family_of(asked, "tilt")
+    return Question(name=name, expected=degrees, problem=asked, family=family)
 
 
 def rubbing(problem: Problem, value: float) -> Question:
@@ -229,22 +163,8 @@ def rubbing(problem: Problem, value: float) -> Question:
         for joint in assembly.joints
     )
     asked = replace(problem, assembly=replace(assembly, joints=joints))
-
-    def stands(mu: float) -> float:
-        return 1.0 if equilibrium(asked.with_friction(mu)).exists else -1.0
-
-    def exact() -> float:
-        # Zero is a problem of its own, and no root.
-        none = equilibrium(replace(asked, mu=0.0)).exists
-        return 0.0 if none else float(bisect(stands, FINEST, 10.0, xtol=FINEST))
-
-    return Question(
-        name="least friction",
-        expected=value,
-        exact=exact,
-        at=lambda mu: replace(asked, mu=mu),
-        inside=1.0,
-    )
+    family = family_of(asked, "mu")
+    return Question(name="least friction", expected=value, problem=asked, family=family)
 
 
 def answered(
@@ -254,17 +174,18 @@ def answered(
     moving: bool,
     engine: str = "direct",
     aside: float | None = None,
-) -> Line:
-    """Ask limit analysis and an engine; by default as near as is known of it."""
+) -> Row:
+    """Ask limit analysis and an engine; by default as near as is known of it.
+
+    Returns: The case, its question, the value `expected` and that by `limit`, with its `error`,
+        relative or absolute where the value is 0. What the engine says `inside` and `outside`
+        of what stands, empty where it was not asked, and its processor time in `seconds`.
+    """
     value, exact = question.expected, question.exact()
-    size = abs(value) or 1.0
     off = (ASIDE if engine == "direct" else COARSE) if aside is None else aside
-    inside = value + off * size * question.inside
-    outside = value - off * size * question.inside
     begin = time.process_time()
 
-    def say(at: float) -> str:
-        problem = question.at(at)
+    def say(problem: Problem) -> str:
         if len(problem.assembly.blocks) > (MOST if engine == "direct" else OTHERS):
             return ""
         try:
@@ -273,29 +194,24 @@ def answered(
             return REFUSED
         return str(observe(problem, engine, moving=moving).verdict)
 
-    if question.name == "stands":
-        said = [say(0.0), ""] if value else ["", say(0.0)]
-    elif question.name == "least friction" and value == 0:
-        said = [say(0.0), ""]
-    else:
-        said = [say(inside), say(outside)]
-    return Line(
-        case=name,
-        question=question.name,
-        expected=value,
-        limit=exact,
-        error=abs(exact - value) / size,
-        inside=said[0],
-        outside=said[1],
-        seconds=round(time.process_time() - begin, 3),
-    )
+    said = {side: say(problem) for side, problem in question.sides(off).items()}
+    return {
+        "case": name,
+        "question": question.name,
+        "expected": value,
+        "limit": exact,
+        "error": abs(exact - value) / (abs(value) or 1.0),
+        "inside": said.get("inside", ""),
+        "outside": said.get("outside", ""),
+        "seconds": round(time.process_time() - begin, 3),
+    }
 
 
 def ask(of: tuple[str, int], *, moving: bool, engine: str, aside: float | None) -> Row:
     """Ask a question of a case by its number."""
     name, number = of
     question = list(questions(name))[number]
-    return asdict(answered(name, question, moving=moving, engine=engine, aside=aside))
+    return answered(name, question, moving=moving, engine=engine, aside=aside)
 
 
 def main(
@@ -306,7 +222,7 @@ def main(
     engine: str = "direct",
     aside: float | None = None,
     processes: int = 1,
-) -> Result:
+) -> list[Row]:
     """Ask every case, or in a quick run few; write the table."""
     # The smallest first: of a run that is stopped most cases are there.
     by_size = sorted(
@@ -321,19 +237,31 @@ def main(
     say = partial(ask, moving=moving, engine=engine, aside=aside)
     rows = answers(out / f"{kept}.jsonl", asked, say, processes)
     write_rows(out / f"{kept}.csv", rows)
-    own = [{field.name: row[field.name] for field in fields(Line)} for row in rows]
-    return Result(tuple(Line(**cast("dict[str, Any]", row)) for row in own), engine)
+    return rows
 
 
-def table(result: Result) -> str:
-    """Return the lines, and what they come to."""
-    cases = len({line.case for line in result.lines})
+def counted(rows: Sequence[Row]) -> Counter[str]:
+    """Count the answers of the engine: right, false, undecided, refused."""
+    told = Counter[str]()
+    for row in rows:
+        for side, right in (("inside", Verdict.STANDS), ("outside", Verdict.COLLAPSES)):
+            said = str(row[side] or "")
+            known = "right" if said == right else "false"
+            told[said if said in {"", Verdict.UNDECIDED, REFUSED} else known] += 1
+    del told[""]
+    return told
+
+
+def table(rows: Sequence[Row]) -> str:
+    """Return the rows, and what they come to."""
+    told, cases = counted(rows), len({row["case"] for row in rows})
+    worst = max(float(row["error"] or 0) for row in rows)
     said = (
-        f"{cases} cases, {len(result.lines)} questions: limit off by at most "
-        f"{result.worst_error:.1e}; {result.engine} asked {result.asked} times, "
-        f"{result.false} false, {result.undecided} undecided, {result.refused} refused"
+        f"{cases} cases, {len(rows)} questions: limit off by at most {worst:.1e}; "
+        f"{told.total()} answers of the engine, {told['false']} false, "
+        f"{told['undecided']} undecided, {told[REFUSED]} refused"
     )
-    return "\n".join([*map(str, result.lines), said])
+    return "\n".join([*map(str, rows), said])
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ from worlds import (
     overlap_and_slip,
 )
 
-from analysis.structure_cases import ASIDE, MOST, Question, answered, questions
+from analysis.structure_cases import ASIDE, MOST, Question, answered, counted, questions
 from blocksim import JointState, Problem, Verdict, equilibrium, structure_of
 from blocksim.engines.contact import banded, interior, path_following, solver
 from blocksim.engines.contact.cones import Cones
@@ -55,17 +55,12 @@ OPEN = {"compas_assembly_wall"}
 """All courses of it slide at once, each at the edge of friction: `direct` does not end it."""
 
 
+TRUE = {"inside": Verdict.STANDS, "outside": Verdict.COLLAPSES}
+
+
 def ends(question: Question) -> list[tuple[Problem, Verdict]]:
     """Problems just inside and just outside of a value, and what is true of them."""
-    value = question.expected
-    if question.name == "stands":
-        return [(question.at(0.0), Verdict.STANDS if value else Verdict.COLLAPSES)]
-    aside = ASIDE * (abs(value) or 1.0) * question.inside
-    inside = (question.at(value + aside), Verdict.STANDS)
-    if question.inside > 0 and value == 0:
-        # No friction is the least there is.
-        return [inside]
-    return [inside, (question.at(value - aside), Verdict.COLLAPSES)]
+    return [(problem, TRUE[side]) for side, problem in question.sides(ASIDE).items()]
 
 
 @pytest.mark.parametrize("name", of_each_kind(ASKED))
@@ -405,8 +400,9 @@ def test_corners_open_and_slide_and_are_no_length() -> None:
 def test_the_study_says_what_a_wrong_answer_is() -> None:
     (question,) = questions("trilithon")
     line = answered("trilithon", replace(question, expected=0.26), moving=False)
-    assert (line.inside, line.false, line.undecided) == (Verdict.COLLAPSES, 1, 0)
-    assert line.error == pytest.approx(0.01 / 0.26)
+    assert line["inside"] == Verdict.COLLAPSES
+    assert counted([line]) == {"false": 1, "right": 1}
+    assert line["error"] == pytest.approx(0.01 / 0.26)
 
 
 @pytest.mark.parametrize(

@@ -94,7 +94,7 @@ def test_what_slides_from_nothing_is_begun_with_forces(
 ) -> None:
     """Values of the literature: a block between two walls, a shelf on its brackets, walls."""
     line = answered(name, list(questions(name))[number], moving=False, engine="mujoco")
-    assert (line.inside, line.outside) == (inside, outside)
+    assert (line["inside"], line["outside"]) == (inside, outside)
 
 
 def test_let_go_it_keeps_the_forces_it_is_given() -> None:

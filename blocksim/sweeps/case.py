@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import replace
 from hashlib import blake2b
 from typing import (
     Any,
     Literal,
     NamedTuple,
-    Protocol,
     TypedDict,
     get_args,
     get_type_hints,
@@ -218,21 +217,3 @@ def is_plain(kind: str, names: Iterable[str], over: str | None, rest: str) -> bo
     known = {*names}
     is_sized = "eta" in known or "ratio" in known
     return NEEDED <= known <= PLAIN and is_sized == (over is None)
-
-
-class Questions(Protocol):
-    """The questions of a sweep: a `Design`, or anything else with these three members."""
-
-    @property
-    def method(self) -> tuple[str, ...]:
-        """Methods that occur."""
-        ...
-
-    @property
-    def size(self) -> int:
-        """Number of cases, by which progress is told."""
-        ...
-
-    def cases(self) -> Iterator[Case]:
-        """Give the cases, always in the same order."""
-        ...

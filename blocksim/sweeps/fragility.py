@@ -8,7 +8,7 @@ by itself: the share that falls lies between without and with it.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
@@ -74,42 +74,22 @@ class Recorded(Case):
         return replace(found, shaking=replace(found.shaking, amplitude=amplitude))
 
 
-@dataclass(frozen=True, kw_only=True)
-class Scaled:
-    """The questions of a sweep: every record at every amplitude.
-
-    Parameters
-    ----------
-    problems : tuple of Problem
-        One a record, shaken by it.
-    amplitudes : tuple of float
-    engine : str
-    settings : tuple of (str, float)
-    """
-
-    problems: tuple[Problem, ...]
-    amplitudes: tuple[float, ...]
-    engine: str
-    settings: Overrides
-
-    @property
-    def method(self) -> tuple[str, ...]:
-        """The one that answers."""
-        return (self.engine,)
-
-    @property
-    def size(self) -> int:
-        """Number of cases."""
-        return len(self.problems) * len(self.amplitudes)
-
-    def cases(self) -> Iterator[Recorded]:
-        """Give the cases, record by record."""
-        for problem in self.problems:
-            rest = json.dumps(to_record(problem), sort_keys=True)
-            for amplitude in self.amplitudes:
-                given = (("mu", problem.mu), ("amplitude_g", amplitude))
-                kind = problem.title or "structure"
-                yield Recorded(kind, given, self.engine, rest=rest, settings=self.settings)
+def scaled(
+    problems: Iterable[Problem], amplitudes: Sequence[float], engine: str, settings: Overrides
+) -> list[Recorded]:
+    """Return cases of every problem, shaken by a record each, at every amplitude [g]."""
+    return [
+        Recorded(
+            problem.title or "structure",
+            (("mu", problem.mu), ("amplitude_g", float(amplitude))),
+            engine,
+            rest=rest,
+            settings=settings,
+        )
+        for problem in problems
+        for rest in [json.dumps(to_record(problem), sort_keys=True)]
+        for amplitude in amplitudes
+    ]
 
 
 def fragility(
@@ -164,23 +144,16 @@ def fragility(
     require(grow, "amplitudes", list(amplitudes), "growing")
     problems = tuple(replace(problem, shaking=record) for record in records.values())
     chosen: Method = choose(given.method, problem=problems[0], settings=given.settings)
-    scaled = Scaled(
-        problems=problems,
-        amplitudes=tuple(map(float, amplitudes)),
-        engine=chosen.name,
-        settings=tuple(sorted(given.settings.items())),
-    )
+    overrides = tuple(sorted(given.settings.items()))
+    cases = scaled(problems, amplitudes, chosen.name, overrides)
     with ExitStack() as stack:
         alone = stack.enter_context(ThreadPoolExecutor(1)) if workers == 1 else None
         kept = folder or stack.enter_context(TemporaryDirectory())
-        sweep(scaled, kept, executor=alone, workers=workers, progress=given.progress)
+        sweep(cases, kept, executor=alone, workers=workers, progress=given.progress)
         found = {str(row["id"]): row["verdict"] for row in read_rows(kept)}
-    version = version_of(scaled.engine)
+    version = version_of(chosen.name)
     # What no process could answer has no verdict.
-    said = [
-        Verdict(found[each.identity(version).hex()] or Verdict.UNDECIDED)
-        for each in scaled.cases()
-    ]
+    said = [Verdict(found[each.identity(version).hex()] or Verdict.UNDECIDED) for each in cases]
     wide = len(amplitudes)
     return Fragility(
         problem=problem,

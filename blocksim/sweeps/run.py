@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
     BrokenExecutor,
@@ -32,7 +32,8 @@ from blocksim.sweeps.answers import (
     reason_of,
     version_of,
 )
-from blocksim.sweeps.case import Case, Pace, Questions
+from blocksim.sweeps.case import Case, Pace
+from blocksim.sweeps.design import Design
 from blocksim.sweeps.load import design_of, load_design
 from blocksim.sweeps.shards import identities, locked, write_shard
 
@@ -45,6 +46,8 @@ STATIC_SECONDS = 1e-4
 """First guess of the time of a static case; that of an engine is a whole chunk's."""
 
 Chunk = list[Asked]
+Questions = Design | AnyPath | Mapping[str, Any] | Sequence[Case]
+"""A design, its file or what such a file says, or cases."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +82,7 @@ class Summary:
 
 
 def sweep(
-    design: Questions | AnyPath | Mapping[str, Any],
+    design: Questions,
     folder: AnyPath,
     *,
     executor: Executor | None = None,
@@ -91,8 +94,8 @@ def sweep(
 
     Parameters
     ----------
-    design : Design, Questions, path or mapping
-        What to ask: a design, its file, or what such a file says.
+    design : Design, path, mapping or sequence of Case
+        What to ask: a design, its file, what such a file says, or cases.
     folder : Path
         For the rows, made if need be; `read_rows` reads them.
     executor : Executor, optional
@@ -167,13 +170,17 @@ class _Todo:
     `found`: Of those, how many were passed over.
     """
 
-    def __init__(self, design: Questions | AnyPath | Mapping[str, Any]) -> None:
+    def __init__(self, design: Questions) -> None:
         if isinstance(design, str | os.PathLike):
             design = load_design(design)
         elif isinstance(design, Mapping):
             design = design_of(design)
-        self._cases, self.size = design.cases(), design.size
-        self.versions = {method: version_of(method) for method in design.method}
+        if isinstance(design, Design):
+            self._cases, self.size, methods = design.cases(), design.size, {*design.method}
+        else:
+            self._cases, self.size = iter(design), len(design)
+            methods = {case.method for case in design}
+        self.versions = {method: version_of(method) for method in methods}
         self.done: set[bytes] = set()
         self._seen: set[bytes] = set()
         self._pace: dict[Pace, tuple[int, float]] = {}
