@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 from running import ENGINES
-from sweeps import SIMULATED, Rows, design_of, rows_of
+from sweeps import SIMULATED, Rows, rows_of, swept
 from windows import PATIENCE, Windows
 
-from blocksim import MissingPart, sweep
+from blocksim import MissingPart
 from blocksim.sweeps import run
 
 # Compiled once, not in every run and by every process that tests start.
@@ -62,8 +62,7 @@ def pytest_pyfunc_call() -> Generator[None, object, object]:
 def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Rows:
     """Rows of `SIMULATED` as one sweep writes them."""
     folder = tmp_path_factory.mktemp("uninterrupted")
-    with ThreadPoolExecutor(1) as executor:
-        sweep(design_of(folder, SIMULATED), folder, executor=executor)
+    swept(SIMULATED, folder)
     rows = rows_of(folder)
     assert len(rows) == 40
     assert all(row["error"] is None for row in rows.values())

@@ -306,14 +306,8 @@ def _asked(name: str) -> st.SearchStrategy[tuple[str, ...]]:
 def _meshes() -> dict[str, bytes]:
     """Two boxes on a bed as meshes, by the name of the file."""
     scene: Any = trimesh.Scene()
-    for name, (x, z, wide) in {
-        "supports": (-1, -1, 3),
-        "a": (0, 0, 1),
-        "b": (0.2, 1, 1),
-    }.items():
-        scene.add_geometry(
-            trimesh.convex.convex_hull(np.array(_cuboid(x, z, wide))), geom_name=name
-        )
+    for name, *at in (("supports", -1, -1, 3), ("a", 0, 0, 1), ("b", 0.2, 1, 1)):
+        scene.add_geometry(trimesh.convex.convex_hull(np.array(_cuboid(*at))), geom_name=name)
     made = {kind: scene.export(file_type=kind) for kind in ("obj", "stl", "ply", "glb")}
     made["text.stl"] = scene.to_geometry().export(file_type="stl_ascii")
     return {

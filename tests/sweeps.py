@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from blocksim import load_design, read_rows
+from blocksim import Summary, load_design, read_rows, sweep
 
 GRID = """
 half_angle_deg = { low = 60, high = 150, steps = 4 }
@@ -32,6 +33,13 @@ def design_of(folder: Path, text: str) -> Any:
     path = folder / "design.toml"
     path.write_text(text)
     return load_design(path)
+
+
+def swept(asked: Any, folder: Path, **how: Any) -> Summary:
+    """Sweep a design, its table or its text, within this process."""
+    design = design_of(folder, asked) if isinstance(asked, str) else asked
+    with ThreadPoolExecutor(1) as executor:
+        return sweep(design, folder, executor=executor, **how)
 
 
 def rows_of(folder: Path) -> Rows:

@@ -110,16 +110,9 @@ def test_for_long(nursery: Nursery, tmp_path: Path) -> None:
             seed(number)(run)()
     total = sum(tried[kind] for kind in ATTACKS)
     names = (
-        "traceback",
-        "hang",
-        "memory",
-        "abort",
-        "killed",
-        "left",
-        "no line",
-        "unprintable",
+        "traceback", "hang", "memory", "abort", "killed", "left", "no line", "unprintable",
         "code",
-    )
+    )  # fmt: skip
     told = ", ".join(f"{name} {seen[name]}" for name in names)
     print(f"\n{total} attacks in {MINUTES:g} min from seed {first}: {told}")  # noqa: T201
     print(", ".join(f"{name} {count}" for name, count in sorted(tried.items())))  # noqa: T201

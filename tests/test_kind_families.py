@@ -56,15 +56,8 @@ def test_other_parameters() -> None:
 def test_an_island_is_told() -> None:
     """On slender piers a thin arch falls, a thicker one stands, the next pushes them over."""
     arch = {"kind": "circular-arch", "voussoirs": 12}
-    portal = structure_of(
-        {
-            "kind": "portal",
-            "friction": 0.7,
-            "pier_width": 0.38,
-            "pier_height": 4.0,
-            "arch": arch,
-        }
-    )
+    piers = {"pier_width": 0.38, "pier_height": 4.0}
+    portal = structure_of({"kind": "portal", "friction": 0.7, "arch": arch, **piers})
     stood = [
         check(portal.but(**{"arch.thickness": value}), method="limit").verdict is Verdict.STANDS
         for value in (0.1, 0.15, 0.25, 0.33)

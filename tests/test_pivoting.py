@@ -198,17 +198,9 @@ def dense(before, after, blocks, rows):
 @settings(deadline=None, max_examples=60)
 @given(st.integers(0, 2**32), st.integers(1, 8), st.floats(0.05, 3.0))
 def test_a_solution_obeys_newton_signorini_and_coulomb(seed, blocks, mu):
-    before, after, mass, rows, rates, free = chain(seed, blocks)
-    solution = ContactProblem(before, after, mass, mu).solve(rows, rates, free, None, 1e-12)
-    matrix = dense(before, after, blocks, rows)
-    x = solution.acceleration.ravel()
-    pull = np.einsum("jk,jkx->x", solution.forces, matrix)
-    scale = max(1.0, np.abs(x).max())
-    assert np.abs(mass.ravel() * (x - free.ravel()) - pull).max() < 1e-7 * scale
-    ahead = rates + matrix @ x
-    pressure, friction = solution.forces[:, :2], solution.forces[:, 2:]
-    opening, slip = ahead[:, :2], ahead[:, 2:]
-    assert pressure.min() >= 0
+    solution, left, (pressure, friction), (opening, slip) = solved(seed, blocks, mu)
+    scale = max(1.0, np.abs(solution.acceleration).max())
+    assert left < 1e-7 * scale
     assert opening.min() > -1e-8 * scale
     assert np.minimum(pressure, opening).max() < 1e-8 * scale
     assert (np.abs(friction) - mu * pressure).max() < 1e-7 * scale
@@ -216,6 +208,18 @@ def test_a_solution_obeys_newton_signorini_and_coulomb(seed, blocks, mu):
     assert (
         np.abs(friction + mu * pressure * np.sign(slip))[slides].max(initial=0) < 1e-6 * scale
     )
+
+
+def solved(seed, blocks, mu):
+    """A chain's step: its solution, what is out of balance, forces and ways at the ends."""
+    before, after, mass, rows, rates, free = chain(seed, blocks)
+    solution = ContactProblem(before, after, mass, mu).solve(rows, rates, free, None, 1e-12)
+    matrix, x = dense(before, after, blocks, rows), solution.acceleration.ravel()
+    pull = np.einsum("jk,jkx->x", solution.forces, matrix)
+    left = np.abs(mass.ravel() * (x - free.ravel()) - pull).max()
+    ahead, forces = rates + matrix @ x, solution.forces
+    assert forces[:, :2].min() >= 0
+    return solution, left, (forces[:, :2], forces[:, 2:]), (ahead[:, :2], ahead[:, 2:])
 
 
 @pytest.mark.parametrize("seeds", [60, pytest.param(601, marks=pytest.mark.long)])
@@ -232,19 +236,13 @@ def test_every_joint_keeps_the_law_of_its_own_friction_wherever_it_is_drawn(seed
 
 
 def keeps_the_law_of_its_own_friction(seed, blocks):
-    before, after, mass, rows, rates, free = chain(seed, blocks)
-    mu = np.random.default_rng(seed).choice([0.0, 0.6, 40.0, 1e7, np.inf], len(before))
-    solution = ContactProblem(before, after, mass, mu).solve(rows, rates, free, None, 1e-12)
+    mu = np.random.default_rng(seed).choice(
+        [0.0, 0.6, 40.0, 1e7, np.inf], len(chain(seed, blocks)[0])
+    )
+    solution, left, (pressure, friction), (opening, slip) = solved(seed, blocks, mu)
     assert solution.residual < 1e-8, seed
-    x = solution.acceleration.ravel()
-    matrix = dense(before, after, blocks, rows)
-    pull = np.einsum("jk,jkx->x", solution.forces, matrix)
-    scale = max(1.0, np.abs(x).max(), np.abs(solution.forces).max())
-    assert np.abs(mass.ravel() * (x - free.ravel()) - pull).max() < 1e-7 * scale
-    ahead = rates + matrix @ x
-    pressure, friction = solution.forces[:, :2], solution.forces[:, 2:]
-    opening, slip = ahead[:, :2], ahead[:, 2:]
-    assert pressure.min() >= 0
+    scale = max(1.0, np.abs(solution.acceleration).max(), np.abs(solution.forces).max())
+    assert left < 1e-7 * scale
     assert opening.min() > -1e-7 * scale
     assert np.minimum(pressure, opening).max() < 1e-7 * scale
     # No friction across a gap, and none that helps the slip.

@@ -194,17 +194,9 @@ def test_any_thickness_is_said() -> None:
     assert "any thickness of the voussoirs as built stands" in seen.reason
     assert "inf" not in seen.reason
     assert "eta any as built" in "\n".join(check_lines(seen))
-    found = bracket(
-        CircularArch(
-            half_angle=math.radians(60), friction=0.7, voussoirs=3, weight="centreline"
-        )
-    )
-    assert (found.arch.eta_low, found.arch.eta_high, found.arch.eta_limit, found.arch.mode) == (
-        None,
-        0,
-        0,
-        None,
-    )
+    found = bracket(CircularArch.of(arch, friction=0.7).but(eta=None))
+    told = found.arch
+    assert (told.eta_low, told.eta_high, told.eta_limit, told.mode) == (None, 0, 0, None)
     assert bracket_lines(found)[0].startswith("ANY THICKNESS STANDS")
 
 

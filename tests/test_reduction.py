@@ -49,12 +49,17 @@ def every_joint(arch, mu):
     Where joints slide Coulomb's law may have several solutions, and all voussoirs may take
     an unsymmetric one; of the half, merging must not change any.
     """
-    joints = tuple(range(arch.voussoirs // 2 + 1))
-    return hold(
-        CircularArch.of(arch, mu).problem(),
-        "direct",
-        reduction=Reduction(arch.assembly(), joints),
-    )
+    half = Reduction(arch.assembly(), tuple(range(arch.voussoirs // 2 + 1)))
+    return hold(CircularArch.of(arch, mu).problem(), "direct", reduction=half)
+
+
+def half_and_whole(arch, mu, **how):
+    """Answers of `direct` about half of an arch in few blocks, and about all its voussoirs."""
+    problem = CircularArch.of(arch, mu).problem()
+    return [
+        observe(problem, "direct", reduction=each, **how)
+        for each in (Reduction.of(arch, mu), None)
+    ]
 
 
 def unbalanced(assembly, resultants, rates):
@@ -136,10 +141,9 @@ def test_rates_are_those_of_rigid_blocks_and_their_mirror_images(drawn, seed):
 @pytest.mark.parametrize("voussoirs", [9, 10])
 def test_resultants_obey_newton_for_every_voussoir(engine, voussoirs, ratio):
     arch = arch_at(ratio, 125, 0.9, voussoirs)
+    problem = CircularArch.of(arch, 0.9).problem()
     for reduction in (None, Reduction.of(arch, 0.9)):
-        world = Simulation.of(
-            CircularArch.of(arch, 0.9).problem(), engine, reduction=reduction
-        ).world()
+        world = Simulation.of(problem, engine, reduction=reduction).world()
         rates = world.hold(SWEEPS[engine])[:, :3]
         left = unbalanced(arch.assembly(), world.resultants(), rates)
         # Bodies that overlap have two places for one force.
@@ -156,10 +160,9 @@ def test_any_guess_is_corrected(half_angle_deg, mu, voussoirs, weight, ratio):
     arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
     crown = () if voussoirs % 2 else (voussoirs // 2,)
     wrong = Reduction(arch.assembly(), (0, *crown))
-    held = hold(CircularArch.of(arch, mu).problem(), "direct", reduction=wrong)
-    assert (
-        held.onset.verdict is hold(CircularArch.of(arch, mu).problem(), "direct").onset.verdict
-    )
+    problem = CircularArch.of(arch, mu).problem()
+    held = hold(problem, "direct", reduction=wrong)
+    assert held.onset.verdict is hold(problem, "direct").onset.verdict
     assert held.simulation.blocks < 10
     half = every_joint(arch, mu)
     scale = max(half.onset.acceleration, 1e-6)
@@ -203,15 +206,7 @@ def test_forces_beyond_a_joint_or_its_friction_are_seen():
 def test_a_keystone_that_leaves_the_plane_takes_all_voussoirs():
     """Five voussoirs with much friction: the halves of the keystone would part."""
     arch = Arch(half_angle=math.radians(146.91), eta=0.5742, voussoirs=5)
-    few, every = (
-        observe(
-            CircularArch.of(arch, 2.43).problem(),
-            "direct",
-            moving=False,
-            reduction=Reduction.of(arch, 2.43) if reduce else None,
-        )
-        for reduce in (True, False)
-    )
+    few, every = half_and_whole(arch, 2.43, moving=False)
     assert few.blocks == every.blocks == 5
     assert few.onset.acceleration == every.onset.acceleration
     assert "blocks" not in few.reason
@@ -233,15 +228,7 @@ def test_half_and_whole_agree(half_angle_deg, mu, voussoirs, weight, ratio):
     eta = least(half_angle, mu, voussoirs, weight).eta_limit
     assume(eta is not None and 1e-3 < eta * ratio <= 2)
     arch = Arch(half_angle=half_angle, eta=eta * ratio, voussoirs=voussoirs, weight=weight)
-    few, every = (
-        observe(
-            CircularArch.of(arch, mu).problem(),
-            "direct",
-            moving=False,
-            reduction=Reduction.of(arch, mu) if reduce else None,
-        )
-        for reduce in (True, False)
-    )
+    few, every = half_and_whole(arch, mu, moving=False)
     assert few.verdict is every.verdict
     assert observed_mode(few.joints, arch) is observed_mode(every.joints, arch)
 
@@ -251,9 +238,8 @@ def test_pymunk_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs, we
     """All 301 voussoirs would take it minutes."""
     for ratio, expected in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
         arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
-        seen = observe(
-            CircularArch.of(arch, mu).problem(), "pymunk", reduction=Reduction.of(arch, mu)
-        )
+        problem = CircularArch.of(arch, mu).problem()
+        seen = observe(problem, "pymunk", reduction=Reduction.of(arch, mu))
         assert seen.verdict is expected, seen.reason
         if expected is Verdict.COLLAPSES:
             mode = least(arch.half_angle, mu, voussoirs, weight).mode_limit
@@ -280,14 +266,7 @@ def test_brackets_are_those_of_all_voussoirs(method, voussoirs):
 @pytest.mark.parametrize("voussoirs", [14, 15])
 def test_let_go_it_moves_as_all_voussoirs_do(voussoirs):
     arch = arch_at(0.98, 125, 0.9, voussoirs)
-    few, every = (
-        observe(
-            CircularArch.of(arch, 0.9).problem(),
-            "direct",
-            reduction=Reduction.of(arch, 0.9) if reduce else None,
-        )
-        for reduce in (True, False)
-    )
+    few, every = half_and_whole(arch, 0.9)
     assert few.verdict is every.verdict is Verdict.COLLAPSES
     assert observed_mode(few.joints, arch) is observed_mode(every.joints, arch)
     assert few.joints == every.joints
@@ -299,11 +278,11 @@ def test_let_go_it_moves_as_all_voussoirs_do(voussoirs):
 
 def test_the_answer_tells_what_was_simulated(engine):
     arch = arch_at(0.98, 90, 0.7, 27)
-    answer = check(CircularArch.of(arch, friction=0.7), method=engine, reduce=True)
+    asked = CircularArch.of(arch, friction=0.7)
+    answer = check(asked, method=engine, reduce=True)
     assert answer.verdict is Verdict.COLLAPSES
     assert (answer.blocks, answer.splits) == (3, 0)
     assert "3 instead of 27 blocks were simulated" in answer.reason
-    usual = check(CircularArch.of(arch, friction=0.7), method=engine)
-    assert usual.blocks == (27 if engine == "direct" else 3)
-    assert check(CircularArch.of(arch, friction=0.7), method=engine, reduce=False).blocks == 27
-    assert check(CircularArch.of(arch, friction=0.7), method="limit").blocks is None
+    assert check(asked, method=engine).blocks == (27 if engine == "direct" else 3)
+    assert check(asked, method=engine, reduce=False).blocks == 27
+    assert check(asked, method="limit").blocks is None

@@ -85,16 +85,9 @@ def test_every_row_is_told(text: str) -> None:
     page = Page(text)
     words = " ".join(" ".join(page.words).split())
     for told in (
-        "error +0.40 %",
-        "Slack.",
-        "no bracket; nothing tried 1 % below",
-        "none up to 2",
-        "not tried",
-        "unnamed",
-        "∞",
-        "No moving run was made.",
-        "-0.050 %",
-    ):
+        "error +0.40 %", "Slack.", "no bracket; nothing tried 1 % below", "none up to 2",
+        "not tried", "unnamed", "∞", "No moving run was made.", "-0.050 %",
+    ):  # fmt: skip
         assert told in words
     assert len(page.all("article")) == 2
     assert len(page.all("svg")) == 4

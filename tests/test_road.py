@@ -78,18 +78,8 @@ def let_go(folder: Path, *options: str) -> Problem:
 
 
 def test_a_weight_on_a_joint_is_shared_by_both_sides(tmp_path: Path) -> None:
-    arch = (
-        "--alpha",
-        "60",
-        "--eta",
-        "0.2",
-        "--mu",
-        "0.7",
-        "--voussoirs",
-        "8",
-        "--unit-weight",
-        "20",
-    )
+    arch = ("--alpha", "60", "--eta", "0.2", "--mu", "0.7", "--voussoirs", "8")
+    arch = (*arch, "--unit-weight", "20")
     loads = let_go(tmp_path, *arch, "--point-load", "0", "10").live
     assert [load.blocks for load in loads] == [(3,), (4,)]
     assert [load.force[1] for load in loads] == [-5000.0, -5000.0]

@@ -17,14 +17,8 @@ from windows import new_page, wait_until
 pytest.importorskip("mkdocs", reason="the extra docs is not installed")
 ROOT = Path(__file__).parent.parent
 SEEN = (
-    "index",
-    "theory/arch",
-    "guide/formats",
-    "methods/limits",
-    "validation",
-    "api",
-    "examples",
-)
+    "index", "theory/arch", "guide/formats", "methods/limits", "validation", "api", "examples",
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")

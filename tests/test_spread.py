@@ -502,19 +502,8 @@ def test_an_answer_on_supports_that_moved_says_what_acted_then() -> None:
 @pytest.mark.parametrize("over", ["load", "mu"])
 def test_what_is_pushed_falls_where_it_falls_first(over: str) -> None:
     """A check pushes to the side to which less is borne, which is not that of the start."""
-    line = (
-        "--span",
-        "8",
-        "--rise",
-        "2.5",
-        "--thickness",
-        "0.5",
-        "--fill",
-        "0.5",
-        "--push",
-        "0.1",
-    )
-    asked = *line, "--point-load", "1.5", "20"
+    line = ("--span", "8", "--rise", "2.5", "--thickness", "0.5", "--fill", "0.5")
+    asked = (*line, "--push", "0.1", "--point-load", "1.5", "20")
     mu = () if over == "mu" else ("--mu", "0.7")
     start = mu or ("--mu", "0.9")
     found = answered("bracket", *asked, *start, "--over", over)

@@ -14,20 +14,9 @@ from blocksim.cli import app
 from blocksim.cli.app import COMMANDS
 
 SLOW = {
-    "PIL",
-    "av",
-    "distributed",
-    "ezdxf",
-    "filelock",
-    "highspy",
-    "jinja2",
-    "matplotlib",
-    "pyarrow",
-    "pydantic",
-    "rich",
-    "scipy",
-    "shapely",
-}
+    "PIL", "av", "distributed", "ezdxf", "filelock", "highspy", "jinja2", "matplotlib",
+    "pyarrow", "pydantic", "rich", "scipy", "shapely",
+}  # fmt: skip
 ARCH = "--alpha 90 --mu 0.7"
 RUN = (
     "import atexit, sys; atexit.register(lambda: print(*sys.modules, file=sys.stderr));"

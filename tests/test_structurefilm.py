@@ -21,15 +21,9 @@ from blocksim.view.style import JOINTS, QUIET
 from blocksim.view.video import to_bytes
 
 ARCH_SAYINGS = (
-    "arch",
-    "thickness",
-    "extrados",
-    "intrados",
-    "voussoir",
-    "r)",
-    "η",
+    "arch", "thickness", "extrados", "intrados", "voussoir", "r)", "η",
     "\N{GREEK SMALL LETTER ALPHA}",
-)
+)  # fmt: skip
 
 
 def square(x: float, y: float, wide: float = 1.0, tall: float = 1.0) -> list[list[float]]:

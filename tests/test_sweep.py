@@ -7,15 +7,14 @@ import math
 import sys
 from collections import Counter
 from collections.abc import Callable, Sequence
-from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future
 from pathlib import Path
 
 import pytest
 from running import csv_rows, inside
-from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
+from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, swept, written
 
 from blocksim import (
-    Arch,
     CircularArch,
     InputError,
     MissingPart,
@@ -33,20 +32,8 @@ from blocksim.sweeps import answers, run
 from blocksim.sweeps import table as tables
 from blocksim.sweeps.answers import Answered, Asked, answer
 from blocksim.sweeps.case import Case
-from blocksim.sweeps.shards import identities
 
 DIRECT = 'half_angle_deg = 90\nmu = 0.7\nratio = 0.999\nmethod = "direct"\n[settings]\n'
-CASE = Case(
-    "circular-arch",
-    (
-        ("half_angle_deg", 90.0),
-        ("mu", 0.7),
-        ("voussoirs", 27),
-        ("weight", "centreline"),
-        ("eta", 0.1),
-    ),
-    "limit",
-)
 PYMUNK = DIRECT.replace("direct", "pymunk")
 
 
@@ -88,14 +75,18 @@ def test_the_command_keeps_the_contract(tmp_path: Path) -> None:
     assert "has a row for each of 192 cases; 192 were there before" in done.stdout
 
 
+def maker_of(row: dict[str, object], **more: object) -> CircularArch:
+    """The arch that a row is of."""
+    given = {name: row[name] for name in ("half_angle_deg", "voussoirs", "weight")}
+    return CircularArch(**given, friction=float(str(row["mu"])), **more)
+
+
 def test_statics_in_bulk_answer_as_single_questions_do(tmp_path: Path) -> None:
-    with ThreadPoolExecutor(1) as executor:
-        sweep(design_of(tmp_path, GRID), tmp_path, executor=executor)
+    swept(GRID, tmp_path)
     rows = rows_of(tmp_path).values()
     assert {row["verdict"] for row in rows} == {"stands", "collapses"}
     for row in rows:
-        arch, mu = arch_of(row, float(str(row["eta"]))), float(str(row["mu"]))
-        single = check(CircularArch.of(arch, friction=mu), method=str(row["asked"]))
+        single = check(maker_of(row, eta=row["eta"]), method=str(row["asked"]))
         assert row["verdict"] == single.verdict
         least = row["eta_theory"]
         assert (least is None) == (single.arch.eta_theory is None)
@@ -106,22 +97,10 @@ def test_statics_in_bulk_answer_as_single_questions_do(tmp_path: Path) -> None:
 
 def test_without_a_thickness_the_least_one_is_asked_for(tmp_path: Path) -> None:
     text = GRID.replace("eta = [0.05, 0.1]", "").replace('"limit"', '"limit", "auto"')
-    with ThreadPoolExecutor(1) as executor:
-        sweep(design_of(tmp_path, text), tmp_path, executor=executor)
+    swept(text, tmp_path)
     for row in rows_of(tmp_path).values():
-        single = bracket(
-            CircularArch(
-                half_angle=math.radians(float(str(row["half_angle_deg"]))),
-                friction=float(str(row["mu"])),
-                voussoirs=int(str(row["voussoirs"])),
-                weight=row["weight"],
-            ),
-            method=str(row["asked"]),
-        )
-        for end, exact in (
-            ("eta_low", single.arch.eta_low),
-            ("eta_high", single.arch.eta_high),
-        ):
+        single = bracket(maker_of(row), method=str(row["asked"])).arch
+        for end, exact in (("eta_low", single.eta_low), ("eta_high", single.eta_high)):
             assert (row[end] is None) == (exact is None)
             assert exact is None or math.isclose(float(str(row[end])), exact, rel_tol=1e-9)
 
@@ -133,10 +112,7 @@ def test_engines_simulate_within_the_band_only_or_wherever_asked(tmp_path: Path)
     for text, simulated in widths.items():
         folder = tmp_path / (text or "none")
         folder.mkdir()
-        with ThreadPoolExecutor(1) as executor:
-            done = sweep(
-                design_of(folder, f'{near}{text}\nmethod = "direct"'), folder, executor=executor
-            )
+        done = swept(f'{near}{text}\nmethod = "direct"', folder)
         assert done.tally.simulated == simulated
         assert done.tally.spared == 5 - simulated
         assert (done.saved_s or 0) == pytest.approx(
@@ -145,9 +121,7 @@ def test_engines_simulate_within_the_band_only_or_wherever_asked(tmp_path: Path)
         for row in rows_of(folder).values():
             stands = float(str(row["ratio"])) > 1
             assert row["verdict"] == ("stands" if stands else "collapses")
-    auto = design_of(tmp_path, f"{near.replace('[', '[0.9995, ')}")
-    with ThreadPoolExecutor(1) as executor:
-        done = sweep(auto, tmp_path, executor=executor)
+    done = swept(near.replace("[", "[0.9995, "), tmp_path)
     assert (done.tally.simulated, done.tally.spared) == (1, 5)
     methods = {row["ratio"]: row["method"] for row in read_rows(tmp_path)}
     assert [each for each, method in methods.items() if method == "direct"] == [0.9995]
@@ -156,8 +130,7 @@ def test_engines_simulate_within_the_band_only_or_wherever_asked(tmp_path: Path)
 def test_settings_are_axes_like_any_other_and_part_of_the_question(tmp_path: Path) -> None:
     text = PYMUNK.replace('"pymunk"', '["limit", "pymunk", "direct"]')
     text += "hold_sweeps = [100, 1_000_000]\nstep = 0.005\n"
-    with ThreadPoolExecutor(1) as executor:
-        done = sweep(design_of(tmp_path, text), tmp_path, executor=executor)
+    done = swept(text, tmp_path)
     # `limit` is run with none of them, and `direct` with no sweeps: asked once each.
     assert (done.cases, done.tally.rows) == (4, 4)
     rows = rows_of(tmp_path).values()
@@ -185,9 +158,8 @@ def test_an_arch_is_a_kind_like_any_other(tmp_path: Path) -> None:
         {**ring, "over": "tilt", **arch},
         {"half_angle_deg": 90, "over": "thickness", **arch},
     )
-    with ThreadPoolExecutor(1) as executor:
-        for design in designs:
-            sweep(design, tmp_path, executor=executor)
+    for design in designs:
+        swept(design, tmp_path)
     rows = list(rows_of(tmp_path).values())
     assert len(rows) == 2 + 4 + 2 + 1
     for row in rows:
@@ -214,8 +186,7 @@ def test_an_arch_is_a_kind_like_any_other(tmp_path: Path) -> None:
 def test_rows_of_earlier_versions_go_into_the_same_table(tmp_path: Path) -> None:
     old = {"id": "0" * 24, "half_angle_deg": 90.0, "mu": "inf", "verdict": "stands"}
     (tmp_path / "rows-old.jsonl").write_text(json.dumps(old) + "\n")
-    with ThreadPoolExecutor(1) as executor:
-        sweep(design_of(tmp_path, KINDS_GRID), tmp_path, executor=executor)
+    swept(KINDS_GRID, tmp_path)
     write_csv(tmp_path, tmp_path / "rows.csv")
     held = {row["id"]: row for row in csv_rows(tmp_path / "rows.csv")}
     assert len(held) == 25
@@ -228,8 +199,7 @@ def test_a_bracket_may_do_without_moving_runs(tmp_path: Path) -> None:
         'half_angle_deg = 90\nmu = 0.7\nvoussoirs = 9\nmethod = ["limit", "direct"]\nconfirm = '
     )
     for confirm in ("true", "false"):
-        with ThreadPoolExecutor(1) as executor:
-            sweep(design_of(tmp_path, text + confirm), tmp_path, executor=executor)
+        swept(text + confirm, tmp_path)
     rows = rows_of(tmp_path).values()
     assert [row["confirmed"] for row in rows if row["asked"] == "limit"] == [None]
     assert {row["confirmed"] for row in rows if row["asked"] == "direct"} == {True, None}
@@ -244,8 +214,7 @@ def test_a_failing_case_becomes_a_row_that_says_so(
 
     monkeypatch.setattr(answers, "check", fails)
     text = 'half_angle_deg = 90\nmu = [0.1, 0.7]\nratio = [1, 60]\nmethod = ["limit", "direct"]'
-    with ThreadPoolExecutor(1) as executor:
-        done = sweep(design_of(tmp_path, text), tmp_path, executor=executor)
+    done = swept(text, tmp_path)
     errors = {
         (row["mu"], row["ratio"], row["asked"]): row["error"]
         for row in rows_of(tmp_path).values()
@@ -310,28 +279,23 @@ def test_an_executor_that_breaks_is_not_ours_to_replace(tmp_path: Path) -> None:
             tmp_path,
             executor=Fragile(lambda case: dict(case.given)["mu"] > 1, BrokenExecutor),
         )
-    with ThreadPoolExecutor(1) as executor:
-        assert sweep(design, tmp_path, executor=executor).cases == 192
+    assert swept(design, tmp_path).cases == 192
 
 
 def test_chunks_change_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, uninterrupted: Rows
 ) -> None:
     monkeypatch.setattr(run, "LARGEST_CHUNK", 7)
-    with ThreadPoolExecutor(1) as executor:
-        sweep(design_of(tmp_path, SIMULATED), tmp_path, executor=executor, in_flight=1)
+    swept(SIMULATED, tmp_path, in_flight=1)
     assert rows_of(tmp_path) == uninterrupted
 
 
 def test_what_occurs_twice_is_asked_once_and_a_larger_design_reuses_rows(
     tmp_path: Path,
 ) -> None:
-    with ThreadPoolExecutor(1) as executor:
-        twice = GRID.replace("0.5, 0.9", "0.5, 0.5, 0.9")
-        done = sweep(design_of(tmp_path, twice), tmp_path, executor=executor)
-        assert (done.cases, done.tally.rows) == (192, 192)
-        larger = design_of(tmp_path, GRID.replace("0.5, 0.9", "0.5, 0.7, 0.9"))
-        done = sweep(larger, tmp_path, executor=executor)
+    done = swept(GRID.replace("0.5, 0.9", "0.5, 0.5, 0.9"), tmp_path)
+    assert (done.cases, done.tally.rows) == (192, 192)
+    done = swept(GRID.replace("0.5, 0.9", "0.5, 0.7, 0.9"), tmp_path)
     assert (done.cases, done.found, done.tally.rows) == (256, 192, 64)
 
 
@@ -343,8 +307,7 @@ def test_a_parquet_table_holds_the_same_rows(
     out = tmp_path / "out"
     given = f"{PYMUNK}hold_sweeps = 1000"
     for text in (GRID, given, GRID.replace("eta = [0.05, 0.1]", "ratio = [0.9, 60.0]")):
-        with ThreadPoolExecutor(1) as executor:
-            sweep(design_of(tmp_path, text), out, executor=executor)
+        swept(design_of(tmp_path, text), out)
     write_parquet(out, out / "rows.parquet")
     rows = list(read_rows(out))
     table = parquet.read_table(out / "rows.parquet").to_pylist()
@@ -372,8 +335,7 @@ def test_tables_of_kinds_have_a_column_and_a_type_for_each_parameter(tmp_path: P
     """CSV is read by the rules of a reader that guesses types, as pandas does."""
     arrow_csv = pytest.importorskip("pyarrow.csv")
     parquet = pytest.importorskip("pyarrow.parquet")
-    with ThreadPoolExecutor(1) as executor:
-        sweep(design_of(tmp_path, KINDS_GRID), tmp_path, executor=executor)
+    swept(KINDS_GRID, tmp_path)
     write_csv(tmp_path, tmp_path / "rows.csv")
     write_parquet(tmp_path, tmp_path / "rows.parquet")
     rows = list(read_rows(tmp_path))
@@ -415,8 +377,7 @@ def test_a_table_of_pandas_is_that_of_the_csv(
         with pytest.raises(MissingPart, match=r"pip install 'blocksim\[pandas\]'"):
             to_pandas(tmp_path)
     pandas = pytest.importorskip("pandas")
-    with ThreadPoolExecutor(1) as executor:
-        sweep(design_of(tmp_path, KINDS_GRID), tmp_path, executor=executor)
+    swept(KINDS_GRID, tmp_path)
     write_csv(tmp_path, tmp_path / "rows.csv")
     table, held = to_pandas(tmp_path), pandas.read_csv(tmp_path / "rows.csv")
     assert len(table) == 24
@@ -488,19 +449,10 @@ def test_a_table_is_written_where_it_can_be(
 def test_what_is_no_row_is_refused(tmp_path: Path) -> None:
     (tmp_path / "rows-x.jsonl").write_text("something else\n")
     with pytest.raises(InputError, match=r"rows-x.jsonl: line 1 = 'something else"):
-        identities(tmp_path)
+        sweep(design_of(tmp_path, GRID), tmp_path)
 
 
-def test_a_worker_of_another_version_is_refused() -> None:
-    case = CASE
+def test_a_worker_of_another_version_is_refused(tmp_path: Path) -> None:
+    case = next(case for case in design_of(tmp_path, GRID).cases() if case.method == "limit")
     with pytest.raises(MissingPart, match="install the same"):
         answer([Asked(case.identity("x"), case)], {"limit": "x"})
-
-
-def arch_of(row: dict[str, object], eta: float) -> Arch:
-    return Arch(
-        half_angle=math.radians(float(str(row["half_angle_deg"]))),
-        eta=eta,
-        voussoirs=int(str(row["voussoirs"])),
-        weight=row["weight"],
-    )

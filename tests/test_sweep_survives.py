@@ -8,15 +8,14 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 from running import alive, blocksim, children, inside, small_files, started, until
-from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
+from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, swept, written
 
-from blocksim import InputError, sweep
+from blocksim import InputError
 from blocksim.sweeps.shards import LOCK, locked
 
 FOR_MINUTES = SIMULATED.replace("count = 20", "count = 4000")
@@ -26,14 +25,13 @@ def test_a_write_that_was_interrupted_loses_nothing(
     tmp_path: Path, uninterrupted: Rows
 ) -> None:
     design = design_of(tmp_path, SIMULATED)
-    with ThreadPoolExecutor(1) as executor:
-        sweep(design, tmp_path, executor=executor)
-        shards = sorted(tmp_path.glob("rows-*.jsonl"), key=lambda path: path.stat().st_size)
-        whole = shards[-1].read_bytes()
-        (tmp_path / f".{shards[-1].name}.part").write_bytes(whole[:100])
-        shards[-1].write_bytes(whole[:-30])
-        shards[0].write_bytes(b'{"id": "0a')
-        done = sweep(design, tmp_path, executor=executor)
+    swept(design, tmp_path)
+    shards = sorted(tmp_path.glob("rows-*.jsonl"), key=lambda path: path.stat().st_size)
+    whole = shards[-1].read_bytes()
+    (tmp_path / f".{shards[-1].name}.part").write_bytes(whole[:100])
+    shards[-1].write_bytes(whole[:-30])
+    shards[0].write_bytes(b'{"id": "0a')
+    done = swept(design, tmp_path)
     assert 0 < done.tally.rows < 40
     assert rows_of(tmp_path) == uninterrupted
     assert not list(tmp_path.glob(".rows-*"))

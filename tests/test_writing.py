@@ -13,7 +13,6 @@ import os
 import stat
 import threading
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
 from errno import EACCES, ENOSPC
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -22,6 +21,7 @@ import numpy as np
 import pytest
 from running import blocksim as run_it
 from running import inside, small_files
+from sweeps import swept
 
 import blocksim
 from blocksim import (
@@ -32,7 +32,6 @@ from blocksim import (
     Tower,
     check,
     simulate,
-    sweep,
     write_csv,
     write_parquet,
 )
@@ -222,14 +221,13 @@ def writers(tmp_path_factory: pytest.TempPathFactory) -> Writers:
         return lambda path: write_whole(path, write)
 
     figure = problem.plot()
-    rows = [[number, "=1", 0.5] for number in range(2000)]
+    cells = [[number, "=1", 0.5] for number in range(2000)]
     tower = Tower(blocks=1, friction=0.6).problem().tilted(0.7)
     fall = simulate(tower, method="direct", duration=0.02)
     proof = check(problem, method="limit").proof
-    swept = tmp_path_factory.mktemp("swept")
-    with ThreadPoolExecutor(1) as executor:
-        asked = {"kind": "column", "width": [0.5, 1.0], "mu": 0.7, "method": "limit"}
-        sweep(asked, swept, executor=executor)
+    rows = tmp_path_factory.mktemp("swept")
+    asked = {"kind": "column", "width": [0.5, 1.0], "mu": 0.7, "method": "limit"}
+    swept(asked, rows)
     return {
         "npz": run.save,
         "mp4": lambda path: write_film(Frames(), path),
@@ -237,7 +235,7 @@ def writers(tmp_path_factory: pytest.TempPathFactory) -> Writers:
         "glb": through(lambda file: write_model(run, file, "glb")),
         "gltf": through(lambda file: write_model(run, file, "gltf")),
         "csv": through(lambda file: write_recording_csv(run, file)),
-        "sheet.csv": through(lambda file: write_sheet(file, ["a", "b", "c"], rows)),
+        "sheet.csv": through(lambda file: write_sheet(file, ["a", "b", "c"], cells)),
         "dxf": through(lambda file: write_dxf(sheet, file)),
         "svg": through(lambda file: save_figure(figure, file, "svg")),
         "png": through(lambda file: save_figure(figure, file, "png")),
@@ -247,8 +245,8 @@ def writers(tmp_path_factory: pytest.TempPathFactory) -> Writers:
         "space.npz": fall.save,
         "space.glb": through(lambda file: write_model(fall, file, "glb")),
         "proof.json": lambda path: write_proof("limit", [proof], path),
-        "rows.csv": lambda path: write_csv(swept, path),
-        "rows.parquet": lambda path: write_parquet(swept, path),
+        "rows.csv": lambda path: write_csv(rows, path),
+        "rows.parquet": lambda path: write_parquet(rows, path),
         "in a folder": lambda path: write_folder(path.parent, {path.name: page.encode()}),
     }
 
