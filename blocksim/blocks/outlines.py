@@ -43,6 +43,21 @@ def before(corners: Array) -> Array:
     return np.concatenate([corners[-1:], corners[:-1]])
 
 
+def outwards(corners: Array) -> Array:
+    """Return unit normals of the sides of a counter-clockwise polygon; 0 of no length."""
+    way = following(corners) - corners
+    length = np.hypot(*way.T)[:, None]
+    out = np.stack([way[:, 1], -way[:, 0]], axis=1)
+    return np.divide(out, length, out=np.zeros_like(out), where=length > 0)
+
+
+def width(polygon: Array) -> float:
+    """Return the least width of a convex polygon."""
+    out = outwards(polygon)
+    along = polygon @ out[out.any(axis=1)].T
+    return float(np.ptp(along, axis=0).min())
+
+
 def distances(points: Array, ends: Array) -> Array:
     """Return how far points (..., 2) are from straight lines between two ends (..., 2, 2)."""
     start, way = ends[..., 0, :], ends[..., 1, :] - ends[..., 0, :]

@@ -14,7 +14,7 @@ import shapely
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.outlines import following, is_convex, joined
+from blocksim.blocks.outlines import is_convex, joined, outwards
 from blocksim.blocks.touching import Faces, Index, Slack
 from blocksim.common.checks import require
 
@@ -120,10 +120,9 @@ def _into(one: Array, other: Array) -> float:
     """Return how deep convex polygons are in each other, along the normal where it is least."""
     apart = -math.inf
     for each, beside in ((one, other), (other, one)):
-        side = following(each) - each
-        long = np.hypot(*side.T)
-        out = np.stack([side[:, 1], -side[:, 0]], axis=1)[long > 0] / long[long > 0, None]
-        beyond = ((beside[:, None] - each[long > 0]) * out).sum(axis=2)
+        out = outwards(each)
+        real = out.any(axis=1)
+        beyond = ((beside[:, None] - each[real]) * out[real]).sum(axis=2)
         apart = max(apart, float(beyond.min(axis=0).max()))
     return -apart
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Literal, cast
 
+import numpy as np
+from numpy.typing import NDArray
+
 from blocksim.common.later import Library
 
 # It has no types.
@@ -17,6 +20,22 @@ KINDS = {
     "nonnegative": "NonnegativeConeT",
     "second-order": "SecondOrderConeT",
 }
+
+
+def cones_of_friction(
+    friction: NDArray[np.float64],
+) -> tuple[NDArray[np.int64], list[Cone]]:
+    """Return the rows of forces at points that lie in cones, and these cones in their order.
+
+    `friction`, (points,): Where it is 0 or inf the normal force alone is bounded.
+    Returns `rows`, (k,): Of three a point: along its normal, and two ways across.
+    """
+    rubs = (friction > 0) & np.isfinite(friction)
+    round_, flat = np.flatnonzero(rubs), np.flatnonzero(~rubs)
+    cones: list[Cone] = [("second-order", 3)] * len(round_)
+    if len(flat):
+        cones.append(("nonnegative", len(flat)))
+    return np.append(3 * round_[:, None] + np.arange(3), 3 * flat), cones
 
 
 def solved_cones(

@@ -27,10 +27,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.outlines import width
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import FRICTION_CAP, Library
 from blocksim.engines.faces import Side, sides_of
-from blocksim.engines.solids import Solids, smaller, width
+from blocksim.engines.solids import Solids, smaller
 
 if TYPE_CHECKING:
     import pymunk

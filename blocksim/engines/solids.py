@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array, Assembly
+from blocksim.blocks.outlines import outwards, width
 from blocksim.blocks.problem import Problem
 from blocksim.engines.contact.geometry import Geometry
 from blocksim.engines.contact.neighbours import TIGHT, Neighbours
@@ -140,26 +141,11 @@ def obj_text(hulls: Iterable[tuple[Array, Faces]]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def width(polygon: Array) -> float:
-    """Return the least width of a convex polygon."""
-    inward = _inward(polygon)
-    along = polygon @ inward[np.hypot(*inward.T) > 0].T
-    return float((along.max(axis=0) - along.min(axis=0)).min())
-
-
 def smaller(polygon: Array, inset: float) -> Array:
     """Return a convex, counter-clockwise polygon with its faces set back."""
-    inward = _inward(polygon)
-    kept = np.hypot(*inward.T) > 0
+    inward = -outwards(polygon)
+    kept = inward.any(axis=1)
     polygon, after = polygon[kept], inward[kept]
     before = np.roll(after, 1, axis=0)
     bend = 1 + (before * after).sum(axis=1, keepdims=True)
     return polygon + inset * (before + after) / np.maximum(bend, SHARPEST)
-
-
-def _inward(polygon: Array) -> Array:
-    """Return unit normals of the faces, from each corner on; 0 if a corner is there twice."""
-    edge = np.roll(polygon, -1, axis=0) - polygon
-    length = np.hypot(*edge.T)[:, None]
-    inward = np.stack([-edge[:, 1], edge[:, 0]], axis=1)
-    return np.divide(inward, length, out=np.zeros_like(inward), where=length > 0)

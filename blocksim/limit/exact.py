@@ -20,6 +20,7 @@ NOTHING = Fraction(0)
 Number = int | Fraction
 Vector = list[Fraction]
 Point = tuple[int, ...]
+AXES: Sequence[Point] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 
 class Exact:
@@ -96,6 +97,16 @@ class Exact:
                 acts += moment(apart(point, self.centres[block]), acts)
             for at, each in enumerate(acts):
                 pull[block][at] += each
+
+    def ways(self, joint: int) -> Sequence[Point]:
+        """Return the ways in which forces act at a joint: its normal, and where it rubs all.
+
+        Across it in the plane, along the axes in space.
+        """
+        normal = self.normals[joint]
+        if self.friction[joint] == 0:
+            return [normal]
+        return AXES if self.axes == 3 else [normal, (-normal[1], normal[0])]
 
     def moving(
         self, joint: int, rates: Sequence[list[int]]

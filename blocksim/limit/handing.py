@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import heapq
+import math
+import operator
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any
+from itertools import islice
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
-from blocksim.common.later import linalg
-from blocksim.limit.exact import Exact, Number
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.common.later import Library
+from blocksim.limit.exact import Exact, Number, apart, moment
 
-Column = Sequence[Number]
-"""Force x, y and moment."""
+if TYPE_CHECKING:
+    import flint
+else:
+    flint = Library("flint")
+
+FINE = 1 << 20
+"""Into how many parts the room of a point is told."""
 
 
 def handed_on(
@@ -63,55 +71,70 @@ def _by_parts(
     block: int,
     joints: list[int],
 ) -> bool:
-    """Hand on what is left on a block by the three parts of its joints with most room."""
-    cx, cy = exact.centres[block]
-    places: list[tuple[int, int, int]] = []
-    columns: list[tuple[int, int, int]] = []
+    """Hand on what is left on a block by all parts of its joints."""
+    found = borne(exact, block, joints, left[block], [[each] * 2 for each in fine(room)])
+    for joint, forces in (found or {}).items():
+        ways, (before, after) = exact.ways(joint), exact.sides[joint]
+        other, sign = (before, -1) if after == block else (after, 1)
+        for end, force in enumerate(forces):
+            for k, part in enumerate(force):
+                parts[4 * joint + 2 * end + k] += part
+            if other != SUPPORT:
+                u, v = (sum(map(operator.mul, force, each)) for each in zip(*ways, strict=True))
+                turn = moment(apart(exact.ends[joint][end], exact.centres[other]), (u, v))
+                for at, each in enumerate((u, v, *turn)):
+                    left[other][at] += sign * each
+    return found is not None
+
+
+def borne(
+    exact: Exact,
+    block: int,
+    joints: Sequence[int],
+    wrench: Sequence[Number],
+    shares: Sequence[list[int]],
+) -> dict[int, list[list[Fraction]]] | None:
+    """Return forces at the points of joints that bear what is left on a block, exactly.
+
+    Each point is a spring as stiff as it has room, without friction along its normal alone.
+    They bear what is left as the block moves. None where they cannot: springs at an edge bear
+    no moment about it.
+
+    `shares`: Stiffness of each point of each joint.
+    Returns: Along `Exact.ways`, on the block after, for each point of each joint.
+    """
+    rows: list[list[int]] = []
+    stiff: list[int] = []
     for joint in joints:
-        (p, q), (before, after) = exact.normals[joint], exact.sides[joint]
-        sign, other = (1, before) if after == block else (-1, after)
-        for end in {exact.ends[joint][0]: 0, exact.ends[joint][1]: 1}.values():
-            x, y = exact.ends[joint][end]
-            for k, (u, v) in enumerate(((sign * p, sign * q), (-sign * q, sign * p))):
-                places.append((4 * joint + 2 * end + k, other, joint))
-                columns.append((u, v, (x - cx) * v - (y - cy) * u))
-    able = np.array([room[joint] for _, _, joint in places])
-    # Whole numbers are divided first: those of tiny coordinates are beyond all floats.
-    rows = np.array([_by_largest(row) for row in zip(*columns, strict=True)]) * able
-    rows /= np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1e-300)
-    if rows.shape[1] < PLANAR:
-        return False
-    qr: Any = linalg.qr
-    chosen: list[int] = qr(rows, pivoting=True, mode="economic")[2][:PLANAR].tolist()
-    a, b, c = (columns[each] for each in chosen)
-    whole = _triple(a, b, c)
-    if not whole:
-        return False
-    goal = [-each for each in left[block]]
-    found = _triple(goal, b, c), _triple(a, goal, c), _triple(a, b, goal)
-    left[block] = [0] * PLANAR
-    for each, above in zip(chosen, found, strict=True):
-        (at, other, _), (u, v, moment), more = (
-            places[each],
-            columns[each],
-            Fraction(above) / whole,
-        )
-        parts[at] += more
-        if other != SUPPORT:
-            (ox, oy), wrench = exact.centres[other], left[other]
-            wrench[0] -= more * u
-            wrench[1] -= more * v
-            wrench[2] -= more * (moment + (cx - ox) * v - (cy - oy) * u)
-    return True
+        for point, share in zip(exact.ends[joint], shares[joint], strict=True):
+            arm, along = apart(point, exact.centres[block]), exact.ways(joint)
+            rows += [[*way, *moment(arm, way)] for way in along]
+            stiff += [share] * len(along)
+    columns, size = np.array(rows, dtype=object), len(wrench)
+    springs = columns * np.array(stiff, dtype=object)[:, None]
+    common = math.lcm(*(each.denominator for each in wrench))
+    right = [-int(each * common) for each in wrench]
+    matrix: Any = flint.fmpz_mat(size, size, (columns.T @ springs).ravel().tolist())
+    try:
+        moves, scale = matrix.solve(flint.fmpz_mat(size, 1, right)).numer_denom()
+    except ZeroDivisionError:
+        return None
+    below = common * int(scale)
+    pushes = iter((springs @ np.array([int(each) for each in moves.entries()])).tolist())
+    found: dict[int, list[list[Fraction]]] = {}
+    for joint in joints:
+        sense, count = 1 if exact.sides[joint][1] == block else -1, len(exact.ways(joint))
+        found[joint] = [
+            [Fraction(sense * each, below) for each in islice(pushes, count)]
+            for _ in exact.ends[joint]
+        ]
+    return found
 
 
-def _triple(a: Column, b: Column, c: Column) -> Number:
-    """Return the determinant of three columns."""
-    return (
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-        - b[0] * (a[1] * c[2] - a[2] * c[1])
-        + c[0] * (a[1] * b[2] - a[2] * b[1])
-    )
+def fine(room: Array) -> list[int]:
+    """Return room in whole numbers, 1 where there is none."""
+    shares: Array = np.maximum(room / max(float(room.max()), 1e-300) * FINE, 1)
+    return shares.astype(np.int64).tolist()
 
 
 def _room(exact: Exact, forces: Array) -> Array:
@@ -157,9 +180,3 @@ def ways(exact: Exact, room: Array) -> list[tuple[int, list[int]]]:
             found.append((block, [joint, *others]))
             reach(block)
     return found
-
-
-def _by_largest(row: Sequence[int]) -> list[float]:
-    """Divide whole numbers by the largest of them."""
-    largest = max(map(abs, row), default=0) or 1
-    return [each / largest for each in row]

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.outlines import width
 from blocksim.blocks.space.polyhedron import SAME, Polyhedron, frame
 
 Spot = tuple[float, float]
@@ -129,7 +130,7 @@ def _common(first: Polyhedron, second: Polyhedron, normal: Array, slack: float) 
         crossing = len(ours) == len(theirs) == 2 and len(shared) == 1
         if not (crossing and _cross(ours, theirs)):
             return None
-    if needed == 3 and _is_narrow(shared, slack):
+    if needed == 3 and width(np.array(shared)) <= slack:
         return None
     return np.array(shared).reshape(-1, 2) @ across + (high + low) / 2 * normal
 
@@ -256,21 +257,6 @@ def _apart(points: list[Spot], slack: float) -> list[Spot]:
         else:
             at += 1
     return found
-
-
-def _is_narrow(around: list[Spot], slack: float) -> bool:
-    """Tell whether the least width of a convex polygon is no more than that."""
-    pairs = list(zip(around, around[1:] + around[:1], strict=True))
-    area = sum(_turn(around[0], *each) for each in pairs) / 2
-    # It is not below the area over half the way around.
-    if 2 * area > slack * sum(math.dist(*each) for each in pairs):
-        return False
-    polygon = np.array(around)
-    edges = np.roll(polygon, -1, axis=0) - polygon
-    long = np.hypot(edges[:, 0], edges[:, 1])
-    sides = np.stack([-edges[:, 1], edges[:, 0]], axis=1) / long[:, None]
-    heights = sides @ polygon.T
-    return bool((heights.max(axis=1) - heights.min(axis=1)).min() <= slack)
 
 
 def _extent(points: Array) -> tuple[int, float]:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
+from blocksim.blocks.outlines import outwards
 from blocksim.blocks.rows import column
 from blocksim.engines.contact.geometry import Geometry, Touch
 from blocksim.engines.contact.meeting import Polygons
@@ -212,8 +213,7 @@ def _lying_on(polygons: Sequence[Array], ends: Array, size: float) -> list[int]:
     found: list[int] = []
     off: list[float] = []
     for index, polygon in enumerate(polygons):
-        edge = np.roll(polygon, -1, axis=0) - polygon
-        out = np.stack([edge[:, 1], -edge[:, 0]], axis=1) / np.hypot(*edge.T)[:, None]
+        out = outwards(polygon)
         beyond = (out * (ends[0] - polygon)).sum(axis=1)
         rise = out @ way
         # The share of the joint that is on the inner side of every face.

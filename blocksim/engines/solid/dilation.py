@@ -11,7 +11,7 @@ import numpy as np
 from scipy import sparse
 
 from blocksim.blocks.assembly import Array
-from blocksim.common.conic import Cone, solved_cones
+from blocksim.common.conic import cones_of_friction, solved_cones
 from blocksim.engines.solid.step import Step, projected
 
 FINEST, IN_MOTION = 1e-10, 1e-12
@@ -32,20 +32,15 @@ def dilating(step: Step, slip: Array | float = 0.0, finest: float = FINEST) -> A
     `finest`: Gap and residuals at which the programme may end.
     """
     points, size, mu = len(step.friction), step.bands.size, step.friction
-    round_ = np.flatnonzero(mu > 0)
-    smooth = np.flatnonzero(mu <= 0)
     # (u_n + mu slip, mu u_t) in the cone of the second order.
     scale = np.ones((points, 3))
     scale[:, 1:] = mu[:, None]
-    order = np.concatenate([(3 * round_[:, None] + np.arange(3)).ravel(), 3 * smooth])
+    order, cones = cones_of_friction(mu)
     factor = scale.ravel()[order]
     rows = sparse.csc_matrix(-(sparse.diags(factor) @ step.matrix[order]))
     drift = step.drift.copy()
     drift[:, 0] += mu * slip
     right = factor * drift.ravel()[order]
-    cones: list[Cone] = [("second-order", 3)] * len(round_)
-    if len(smooth):
-        cones.append(("nonnegative", len(smooth)))
     inertia = sparse.identity(size, format="csc")
     found = solved_cones(inertia, -step.free, rows, right, cones, finest=finest)
     z = np.array(found.z)

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from blocksim.blocks.assembly import Array
-from blocksim.common.conic import Cone, solved_cones
+from blocksim.common.conic import Cone, cones_of_friction, solved_cones
 from blocksim.common.errors import Unsolved
 
 FINEST = 1e-11
@@ -106,34 +106,16 @@ def _left_over(found: Any) -> tuple[bool, float]:
 
 def _law(friction: Array, press: float) -> tuple[Any, list[Cone]]:
     """Return what friction asks of the forces, and the cones in which that lies."""
-    points = len(friction)
-    rough, smooth = np.isinf(friction), friction == 0
-    round_ = np.flatnonzero(~rough & ~smooth)
-    last = 3 * points
     # (normal - press * unknown, across / mu) in a cone, then what has no cone of its own.
-    scale = 1 / friction[round_]
-    ones = np.ones(len(round_))
-    first = 3 * np.arange(len(round_))
-    rows = [first, first, first + 1, first + 2]
-    columns = [3 * round_, np.full(len(round_), last), 3 * round_ + 1, 3 * round_ + 2]
-    values = [ones, -press * ones, scale, scale]
-    kinds: list[Cone] = [("second-order", 3)] * len(round_)
-    flat = np.flatnonzero(rough | smooth)
-    start = 3 * len(round_)
-    if len(flat):
-        each = start + np.arange(len(flat))
-        rows += [each, each]
-        columns += [3 * flat, np.full(len(flat), last)]
-        values += [np.ones(len(flat)), np.full(len(flat), -press)]
-        kinds.append(("nonnegative", len(flat)))
-        start += len(flat)
-    slippery = np.flatnonzero(smooth)
+    rows, kinds = cones_of_friction(friction)
+    slippery = np.flatnonzero(friction == 0)
     if len(slippery):
-        across = np.concatenate([3 * slippery + 1, 3 * slippery + 2])
-        rows.append(start + np.arange(len(across)))
-        columns.append(across)
-        values.append(np.ones(len(across)))
-        kinds.append(("zero", len(across)))
-        start += len(across)
-    entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-    return sparse.csc_matrix(entries, shape=(start, 3 * points + 1)), kinds
+        rows = np.concatenate([rows, 3 * slippery + 1, 3 * slippery + 2])
+        kinds.append(("zero", 2 * len(slippery)))
+    bounded = (friction > 0) & np.isfinite(friction)
+    points = len(friction)
+    scale, normal = np.ones((points, 3)), (3 * np.arange(points), np.zeros(points, np.int64))
+    scale[bounded, 1:] = 1 / friction[bounded, None]
+    last = sparse.csc_matrix((np.full(points, -press), normal), shape=(3 * points, 1))
+    every = [sparse.diags(scale.ravel()), last]
+    return sparse.csc_matrix(sparse.hstack(every, format="csr")[rows]), kinds

@@ -17,30 +17,21 @@ for their last digits, so a hinge slips by those: such a fall is hardly ever pro
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from itertools import islice
+from typing import Any
 
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.common.later import Library
 from blocksim.limit.exact import NOTHING, SLACK, Exact, Number, Point, apart, moment, spun
 from blocksim.limit.exact import whole_numbers as whole
-from blocksim.limit.handing import ways
+from blocksim.limit.handing import borne, fine, ways
 from blocksim.limit.proof import Proof, by_work
 from blocksim.limit.rational import as_bodies
 from blocksim.limit.space.contacts import Contacts
 
-if TYPE_CHECKING:
-    import flint
-else:
-    flint = Library("flint")
-
-FINE = 1 << 20
-"""Into how many parts the room of a point is told."""
-AXES: list[Point] = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
 Force = list[Number]
 Wrench = list[Number]
 Forces = list[list[Force]]
@@ -137,9 +128,8 @@ def _handed_on(
     room: Array = np.maximum(contacts.slack(forces.ravel()), 0.0)
     of_joint: Array = np.zeros(len(exact.sides))
     np.add.at(of_joint, contacts.joint, room)
-    shares = np.maximum(room / max(float(room.max()), 1e-300) * FINE, 1).astype(np.int64)
-    last = np.cumsum([len(ends) for ends in exact.ends])
-    own: list[list[int]] = [each.tolist() for each in np.split(shares, last[:-1])]
+    shares = iter(fine(room))
+    own = [[*islice(shares, len(ends))] for ends in exact.ends]
     added: dict[int, list[Force]] = {}
     order, left, found = ways(exact, of_joint), [*unbalanced], [*stored]
     if len(order) < len(left):
@@ -148,10 +138,13 @@ def _handed_on(
         wrench = left[block]
         if not any(wrench):
             continue
-        more = _borne(exact, block, joints[:1], wrench, own)
-        more = more or _borne(exact, block, joints, wrench, own)
-        if more is None:
+        bears = borne(exact, block, joints[:1], wrench, own)
+        bears = bears or borne(exact, block, joints, wrench, own)
+        if bears is None:
             return None
+        more = {
+            joint: [_along(exact, joint, each) for each in its] for joint, its in bears.items()
+        }
         for joint, each in more.items():
             before, after = exact.sides[joint]
             other = before if after == block else after
@@ -164,47 +157,10 @@ def _handed_on(
     return found
 
 
-def _borne(
-    exact: Exact, block: int, joints: Sequence[int], wrench: Wrench, shares: Sequence[list[int]]
-) -> dict[int, list[Force]] | None:
-    """Return forces at the points of joints that bear what is left on a block, exactly.
-
-    Each point is a spring as stiff as it has room, without friction along its normal alone.
-    They bear what is left as the block moves. None where they cannot: springs at an edge bear
-    no moment about it.
-    """
-    rows: list[list[int]] = []
-    stiff: list[int] = []
-    for joint in joints:
-        across = [exact.normals[joint]] if exact.friction[joint] == 0 else AXES
-        for point, share in zip(exact.ends[joint], shares[joint], strict=True):
-            arm = apart(point, exact.centres[block])
-            rows += [[*way, *moment(arm, way)] for way in across]
-            stiff += [share] * len(across)
-    columns = np.array(rows, dtype=object)
-    springs = columns * np.array(stiff, dtype=object)[:, None]
-    common = math.lcm(*(each.denominator for each in wrench))
-    right = [-int(each * common) for each in wrench]
-    matrix: Any = flint.fmpz_mat(6, 6, (columns.T @ springs).ravel().tolist())
-    try:
-        moves, scale = matrix.solve(flint.fmpz_mat(6, 1, right)).numer_denom()
-    except ZeroDivisionError:
-        return None
-    below = common * int(scale)
-    pushes: list[int] = (springs @ np.array([int(each) for each in moves.entries()])).tolist()
-    found: dict[int, list[Force]] = {}
-    at = 0
-    for joint in joints:
-        sense = 1 if exact.sides[joint][1] == block else -1
-        n = exact.normals[joint]
-        for _ in exact.ends[joint]:
-            if exact.friction[joint] == 0:
-                push, at = [pushes[at] * each for each in n], at + 1
-            else:
-                push, at = pushes[at : at + 3], at + 3
-            force: Force = [Fraction(sense * each, below) for each in push]
-            found.setdefault(joint, []).append(force)
-    return found
+def _along(exact: Exact, joint: int, parts: Sequence[Number]) -> Force:
+    """Return a force of its parts along the ways of a joint."""
+    n = exact.normals[joint]
+    return [parts[0] * each for each in n] if len(parts) == 1 else [*parts]
 
 
 def _sum(one: Sequence[Number], other: Sequence[Number]) -> list[Number]:
