@@ -13,7 +13,7 @@ from blocksim.arch import theory
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit import least_thickness
 from blocksim.kinds.circular import CircularArch
-from blocksim.studies.questions import StructureRow
+from blocksim.studies.agreement import Row
 from blocksim.studies.validate import structures, validate
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -129,7 +129,7 @@ def _structures() -> str:
     return table(headings, rows)
 
 
-def _found(row: StructureRow) -> str:
+def _found(row: Row) -> str:
     if row.value is None:
         return str(row.verdict)
     return f"{row.value:.8g} {row.unit or ''}".strip()

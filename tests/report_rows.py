@@ -9,7 +9,7 @@ import numpy as np
 from recorded import recorded
 
 from blocksim import Arch, CircularArch, Mode, Recording, Verdict
-from blocksim.studies.agreement import Validation
+from blocksim.studies.agreement import Row
 
 ARCH = Arch(half_angle=math.pi / 2, eta=0.105, voussoirs=8)
 
@@ -21,23 +21,24 @@ def sliding() -> Recording:
     return recorded(CircularArch.of(ARCH, 0.7).problem(), moved, np.linspace(0, 2, 11))
 
 
-ROW = Validation(
-    scenario="semicircle",
-    engine="pymunk",
+ROW = Row(
+    structure="semicircle",
+    method="pymunk",
+    question="thickness",
     half_angle=math.pi / 2,
     mu=0.7,
-    voussoirs=8,
+    blocks=8,
     weight="centreline",
     modes_published=(Mode.RRR,),
-    eta_published=0.107426,
-    eta_limit=0.106,
+    published="0.107426",
+    expected=0.106,
     mode_limit=Mode.RRR,
-    eta_low=0.1059,
-    eta_high=0.1060,
+    low=0.1059,
+    high=0.1060,
     error=-0.0005,
-    mode_observed=Mode.RRR,
-    below=Verdict.COLLAPSES,
-    above=Verdict.STANDS,
+    mode=Mode.RRR,
+    at_low=Verdict.COLLAPSES,
+    at_high=Verdict.STANDS,
     wall_s=2.5,
     title="The semicircular arch",
     source="A source",
@@ -45,38 +46,38 @@ ROW = Validation(
 )
 
 
-def rows() -> list[Validation]:
+def rows() -> list[Row]:
     """Two arches by two engines: all kinds of values that a row can have."""
     hostile = replace(
         ROW,
-        scenario="second<script>alert(1)</script>",
+        structure="second<script>alert(1)</script>",
         title='<img src=x onerror="alert(1)"> & co',
         source='"><b>bold</b>',
         mu=math.inf,
     )
     return [
         ROW,
-        replace(ROW, engine="pybullet", error=0.004, miss="error +0.40 %", note="slack"),
+        replace(ROW, method="pybullet", error=0.004, miss="error +0.40 %", note="slack"),
         replace(
             hostile,
-            eta_limit=None,
-            eta_published=None,
-            eta_low=2.0,
-            eta_high=None,
+            expected=None,
+            published="",
+            low=2.0,
+            high=None,
             error=None,
-            mode_observed=Mode.SS,
-            above=None,
+            mode=Mode.SS,
+            at_high=None,
         ),
         replace(
             hostile,
-            engine="pybullet",
-            eta_low=None,
-            eta_high=None,
+            method="pybullet",
+            low=None,
+            high=None,
             error=None,
-            mode_observed=None,
+            mode=None,
             mode_limit=None,
-            below=None,
-            above=None,
+            at_low=None,
+            at_high=None,
             recording=None,
             miss="no bracket; nothing tried 1 % below",
         ),

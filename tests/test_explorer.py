@@ -15,15 +15,16 @@ from blocksim.view.explorer import explorer_page, read_results
 from blocksim.view.mapshapes import LARGEST_MU, map_shapes
 
 ROW = {
-    "scenario": "semicircle",
+    "structure": "semicircle",
+    "modes_published": "rrr",
     "half_angle_deg": 90.0,
-    "engine": "pymunk",
+    "method": "pymunk",
     "mu": 0.7,
-    "voussoirs": 27,
+    "blocks": 27,
     "weight": "centreline",
-    "eta_low": 0.1066,
-    "eta_high": 0.1068,
-    "mode_observed": "rrr",
+    "low": 0.1066,
+    "high": 0.1068,
+    "mode": "rrr",
     "miss": "",
 }
 
@@ -84,9 +85,9 @@ def test_results_as_validate_writes_them(tmp_path: Path) -> None:
         written(
             tmp_path,
             {},
-            {"mu": "inf", "mode_observed": None, "miss": "mode unnamed"},
-            {"eta_low": 2.0, "eta_high": None},
-            {"eta_low": None},
+            {"mu": "inf", "mode": None, "miss": "mode unnamed"},
+            {"low": 2.0, "high": None},
+            {"low": None},
         )
     )
     assert [row["eta"] for row in rows] == [pytest.approx(0.1067), pytest.approx(0.1067), 2.0]
@@ -99,7 +100,7 @@ def test_results_as_validate_writes_them(tmp_path: Path) -> None:
 
 def test_names_from_elsewhere_are_text_never_markup(tmp_path: Path) -> None:
     evil = "</script><script>alert(1)</script>"
-    page = explorer_page(read_results(written(tmp_path, {"scenario": evil})), evil)
+    page = explorer_page(read_results(written(tmp_path, {"structure": evil})), evil)
     assert evil not in page
     assert embedded(page)["results"][0]["scenario"] == evil
 

@@ -24,7 +24,8 @@ from blocksim.ask.families import families_of
 from blocksim.kinds.loading import load_known
 from blocksim.report.page import report_page
 from blocksim.report.tables import write_results
-from blocksim.studies.questions import StructureRow, answer
+from blocksim.studies.agreement import Row
+from blocksim.studies.questions import answer
 from blocksim.studies.validate import structures, unasked, validate
 
 CASES = {"gable": "gable_least_friction", "skew_arch_crown": "arch_15_skew_30_crown"}
@@ -147,11 +148,11 @@ QUICK = ("oppenheim_7", "box2d_tilted_stack", "gable", "catenary")
 
 
 @pytest.fixture(scope="module")
-def rows() -> list[StructureRow]:
+def rows() -> list[Row]:
     return validate([load_known(name) for name in QUICK], workers=1)
 
 
-def test_answers_agree_with_their_sources(rows: list[StructureRow]) -> None:
+def test_answers_agree_with_their_sources(rows: list[Row]) -> None:
     assert [row.miss for row in rows] == [""] * len(rows)
     by = {(row.structure, row.method): row for row in rows}
     assert len(rows) == len(by) == 11  # pymunk is not asked about the catenary
@@ -209,7 +210,7 @@ def test_what_is_wrong_is_a_miss(
 
 
 @pytest.fixture(scope="module")
-def page(rows: list[StructureRow]) -> str:
+def page(rows: list[Row]) -> str:
     # `rows` have no misses: one is made up, and one name is hostile.
     made = [
         replace(row, title="<b>bold</b>", miss="collapses at 0.3", note="slack")
@@ -244,7 +245,7 @@ def test_the_page_has_a_part_on_structures(page: str) -> None:
     assert 'id="structures"' not in report_page([ROW], MAP, {"blocksim": "0.1"})
 
 
-def test_pictures_are_of_the_mechanism(page: str, rows: list[StructureRow]) -> None:
+def test_pictures_are_of_the_mechanism(page: str, rows: list[Row]) -> None:
     start = page.index('<article id="structure-1">')
     card = page[start : page.index("</article>", start)]
     assert card.count('class="stone"') == card.count('class="rest"') == 7
@@ -265,20 +266,21 @@ def test_pictures_are_of_the_mechanism(page: str, rows: list[StructureRow]) -> N
     assert len(hinges) == 4
 
 
-def test_rows_are_written(tmp_path: Path, rows: list[StructureRow]) -> None:
+def test_rows_are_written(tmp_path: Path, rows: list[Row]) -> None:
     write_results([ROW, *rows], tmp_path, unasked([load_known("catenary")]))
     document = json.loads((tmp_path / "validate.json").read_text(), parse_constant=pytest.fail)
-    part = document["structures"]
-    assert [row["structure"] for row in part["rows"][::3]] == list(QUICK)
-    assert part["rows"][0]["value"] == pytest.approx(0.3705338738135736)
-    assert part["settings"]["aside"]["direct"] == 0.001
+    part = document["rows"][1:]
+    assert [row["structure"] for row in part[::3]] == list(QUICK)
+    assert part[0]["value"] == pytest.approx(0.3705338738135736)
+    assert document["settings"]["aside"]["direct"] == 0.001
     assert document["not_asked"][0]["scenarios"] == ["catenary"]
-    assert "drawn" not in part["rows"][0]
-    lines = csv_rows(tmp_path / "structures.csv")
-    assert lines[1]["hinges"] == "0 3 5 7"
-    assert lines[1]["at_high"] == "collapses"
-    assert lines[0]["published"] == "0.37"
-    assert set(lines[0]) == set(part["rows"][0])
+    assert not {"drawn", "recording"} & part[0].keys()
+    lines = csv_rows(tmp_path / "validate.csv")
+    assert lines[0]["modes_published"] == "rrr"
+    assert lines[2]["hinges"] == "0 3 5 7"
+    assert lines[2]["at_high"] == "collapses"
+    assert lines[1]["published"] == "0.37"
+    assert set(lines[0]) == set(part[0])
 
 
 @pytest.mark.parametrize(
@@ -287,7 +289,7 @@ def test_rows_are_written(tmp_path: Path, rows: list[StructureRow]) -> None:
 def test_the_exit_code_counts_both_parts(
     monkeypatch: pytest.MonkeyPatch,
     tmp_path: Path,
-    rows: list[StructureRow],
+    rows: list[Row],
     arch: str,
     structure: str,
     code: int,

@@ -122,10 +122,10 @@ def test_page_can_be_read_without_seeing_it(text: str) -> None:
         ({"miss": "x"}, "0 of 1 simulated arches agree"),
         ({}, "off by 0.050\xa0% at most"),
         ({}, "of 2 verdicts 1\xa0% to either side of it none is false and none is undecided."),
-        ({"above": Verdict.COLLAPSES}, "1 is false and none is undecided."),
-        ({"below": Verdict.STANDS}, "1 is false and none is undecided."),
-        ({"below": Verdict.UNDECIDED}, "none is false and 1 is undecided."),
-        ({"above": None}, "of 1 verdicts"),
+        ({"at_high": Verdict.COLLAPSES}, "1 is false and none is undecided."),
+        ({"at_low": Verdict.STANDS}, "1 is false and none is undecided."),
+        ({"at_low": Verdict.UNDECIDED}, "none is false and 1 is undecided."),
+        ({"at_high": None}, "of 1 verdicts"),
     ],
 )
 def test_sentence_counts(changes: dict[str, object], words: str) -> None:
@@ -204,7 +204,7 @@ def test_written_with_the_rest(tmp_path: Path) -> None:
     names = {"report.html", "validate.json", "validate.csv", "map.png", "map.svg"}
     assert {path.name for path in made} == {path.name for path in tmp_path.iterdir()} == names
     (line,) = csv_rows(tmp_path / "validate.csv")
-    assert (line["eta_limit"], line["miss"]) == (str(ROW.eta_limit), "")
+    assert (line["expected"], line["miss"]) == (str(ROW.expected), "")
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     links = re.findall(r'<a href="#row-1" aria-label="1, semicircle"', page)
     assert len(links) == 2  # the point and its label
@@ -214,4 +214,4 @@ def test_written_with_the_rest(tmp_path: Path) -> None:
     record = json.loads((tmp_path / "validate.json").read_text())["rows"][0]
     assert "recording" not in record
     assert record["title"] == "The semicircular arch"
-    assert ARCH.voussoirs == record["voussoirs"]
+    assert ARCH.voussoirs == record["blocks"]

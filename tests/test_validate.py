@@ -22,8 +22,10 @@ from blocksim.cli.studies import answer_table
 from blocksim.cli.terminal import show
 from blocksim.common.files import json_text
 from blocksim.kinds.loading import Known, load_known
-from blocksim.studies.agreement import disagreements
-from blocksim.studies.validate import parted, unasked, validate, validate_one
+from blocksim.studies.agreement import disagreements, parted
+from blocksim.studies.questions import answer
+from blocksim.studies.thickness import thinnest
+from blocksim.studies.validate import unasked, validate
 
 
 def test_rows_agree_with_limit_analysis() -> None:
@@ -31,10 +33,10 @@ def test_rows_agree_with_limit_analysis() -> None:
     rows = validate(chosen, ("pymunk",), workers=1)
     first, second = rows
     assert abs(first.error or 1) < 0.002
-    assert (first.below, first.above) == (Verdict.COLLAPSES, Verdict.STANDS)
-    assert first.mode_observed is Mode.RRR
-    assert second.eta_high is None
-    assert second.mode_observed is Mode.SS
+    assert (first.at_low, first.at_high) == (Verdict.COLLAPSES, Verdict.STANDS)
+    assert first.mode is Mode.RRR
+    assert second.high is None
+    assert second.mode is Mode.SS
     assert [row.miss for row in rows] == ["", ""]
 
 
@@ -49,7 +51,7 @@ def test_a_wrong_engine_would_be_a_miss(monkeypatch: pytest.MonkeyPatch) -> None
 
     monkeypatch.setattr(module.limit, "least_thickness", shifted)
     known = load_known("semicircle")
-    row = validate_one(known, known.expect[0], "pymunk")
+    row = answer(known, known.expect[0], "pymunk")
     assert "error -1.0" in row.miss or "error -0.9" in row.miss
     assert "mode rrr, limit says srr" in row.miss
 
@@ -60,14 +62,14 @@ def test_modes_that_coincide_on_a_line_of_the_map_are_both_right() -> None:
     In a wide bracket `direct` sees rrr at the lower end; at the limit they are rrs.
     """
     known = load_known("fig22_first_sliding_149")
-    on_it = validate_one(known, known.expect[0], "direct", tol=4e-3)
-    assert (on_it.mode_observed, on_it.mode_limit) == (Mode.RRR, Mode.RRS)
+    on_it = thinnest(replace(ROW, method="direct"), known, known.expect[0], tol=4e-3)
+    assert (on_it.mode, on_it.mode_limit) == (Mode.RRR, Mode.RRS)
     assert on_it.miss == ""
     assert on_it.note.startswith("on a line of the map")
     rougher = known.problem.maker.but(friction=1.0001 * known.problem.mu).problem()
     aside = replace(known, problem=rougher)
-    beside = validate_one(aside, known.expect[0], "direct", tol=4e-3)
-    assert (beside.mode_observed, beside.mode_limit) == (Mode.RRR, Mode.RRS)
+    beside = thinnest(replace(ROW, method="direct"), aside, known.expect[0], tol=4e-3)
+    assert (beside.mode, beside.mode_limit) == (Mode.RRR, Mode.RRS)
     assert beside.miss == "mode rrr, limit says rrs"
 
 
@@ -84,7 +86,7 @@ def test_engines_that_see_modes_that_coincide_do_not_disagree(
     coincide: tuple[Mode, ...], seen: Mode | None, places: int
 ) -> None:
     one = replace(ROW, modes_theory=coincide)
-    other = replace(one, engine="pybullet", mode_observed=seen)
+    other = replace(one, method="pybullet", mode=seen)
     assert len(disagreements([one, other])) == places
 
 

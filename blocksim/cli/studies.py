@@ -17,9 +17,9 @@ from blocksim.common.words import counted
 from blocksim.engines import NAMES, engine_named
 from blocksim.report.answerwords import ratio, signed
 from blocksim.report.structurepart import found_of, summary_of_structures
-from blocksim.studies.agreement import Validation, disagreements
+from blocksim.studies.agreement import Row, disagreements, parted
 from blocksim.studies.chart import Point, cases, measure, on_front
-from blocksim.studies.validate import LIMIT, Row, parted, structures, unasked
+from blocksim.studies.validate import LIMIT, structures, unasked
 from blocksim.studies.validate import validate as run_validation
 
 
@@ -89,17 +89,17 @@ def answer_table(rows: Sequence[Row]) -> Table:
 
 def _told(row: Row) -> tuple[tuple[str, ...], str, str]:
     """Return a question with what is known of it, the method asked, and its answer."""
-    wrong = " !" if row.miss else ""
-    if isinstance(row, Validation):
-        known = f"{row.mode_limit or ''} {ratio(row.eta_limit)}".strip()
-        published = f"{'/'.join(row.modes_published)} {ratio(row.eta_published)}"
+    if row.modes_published:
+        known = f"{row.mode_limit or ''} {ratio(row.expected)}".strip()
+        published = f"{'/'.join(row.modes_published)} {row.published or '-'}"
         error = "" if row.error is None else f" {signed(100 * row.error, 3)}%"
-        answer = f"{row.mode_observed or '-'}{error}{wrong}"
-        return (row.scenario, "thickness", known, published), row.engine, answer
-    wanted = "" if row.expected is None else f"{row.expected:.8g}"
-    known = row.expected_verdict.value if row.expected_verdict else wanted
-    question = (row.structure, row.question, known, row.published or "-")
-    return question, row.method, f"{found_of(row)}{wrong}"
+        answer = f"{row.mode or '-'}{error}"
+    else:
+        wanted = "" if row.expected is None else f"{row.expected:.8g}"
+        known = row.expected_verdict.value if row.expected_verdict else wanted
+        published, answer = row.published or "-", found_of(row)
+    question = (row.structure, row.question, known, published)
+    return question, row.method, f"{answer} !" if row.miss else answer
 
 
 def answer_lines(rows: Sequence[Row]) -> list[str]:
@@ -120,7 +120,7 @@ def answer_lines(rows: Sequence[Row]) -> list[str]:
         if row.miss
         for (name, over, *_), method, _ in [_told(row)]
     ]
-    if len({row.engine for row in arches}) > 1:
+    if len({row.method for row in arches}) > 1:
         apart = disagreements(arches)
         places = counted(len(apart), "place") if apart else "no place"
         lines.append(f"engines contradict each other in {places}")

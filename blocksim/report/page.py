@@ -25,9 +25,9 @@ from blocksim.report.structurepart import (
 )
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
-from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
-from blocksim.studies.questions import NEAR, SLOWLY, StructureRow
-from blocksim.studies.validate import ASIDE, ERROR_BOUND, Row, parted
+from blocksim.studies.agreement import Row, Unasked, disagreements, numbered, parted
+from blocksim.studies.questions import NEAR, SLOWLY
+from blocksim.studies.thickness import ASIDE, ERROR_BOUND
 from blocksim.view import style
 
 
@@ -43,11 +43,11 @@ def report_page(
     pages.filters |= {"degrees": _degrees, "friction": _friction, "capitalised": _capitalised}
     pages.filters |= {"found": found_of, "error": error_of}
     template = pages.get_template("report.html")
-    engines = list(dict.fromkeys(row.engine for row in rows))
+    engines = list(dict.fromkeys(row.method for row in rows))
     drawn_map, dark = inline_map(map_svg, {n: name for name, n in numbered(rows).items()})
     return template.render(
         cases=[
-            _case(number, [row for row in rows if row.scenario == name])
+            _case(number, [row for row in rows if row.structure == name])
             for name, number in numbered(rows).items()
         ],
         unasked=unasked,
@@ -77,7 +77,7 @@ def _width_of(engine: str) -> str:
     return f"{_percent(engine_named(engine).validated_to)} ({engine})"
 
 
-def _structures(rows: Sequence[StructureRow]) -> dict[str, object]:
+def _structures(rows: Sequence[Row]) -> dict[str, object]:
     """Return what the second part of the page says."""
     shown = shown_structures(rows)
     return {
@@ -90,7 +90,7 @@ def _structures(rows: Sequence[StructureRow]) -> dict[str, object]:
     }
 
 
-def summary(rows: Sequence[Validation]) -> str:
+def summary(rows: Sequence[Row]) -> str:
     """Say in a sentence or two how simulation and limit analysis agree."""
     agree = sum(not row.miss for row in rows)
     share = f"All {len(rows)}" if agree == len(rows) else f"{agree} of {len(rows)}"
@@ -99,9 +99,10 @@ def summary(rows: Sequence[Validation]) -> str:
     if errors:
         worst = _percent(max(errors), ".3f")
         parts.append(f"the least thickness found is off by {worst} at most")
-    false = sum(row.below is Verdict.STANDS or row.above is Verdict.COLLAPSES for row in rows)
-    undecided = sum(Verdict.UNDECIDED in {row.below, row.above} for row in rows)
-    asked = sum((row.below is not None) + (row.above is not None) for row in rows)
+    ends = [(row.at_low, row.at_high) for row in rows]
+    false = sum(low is Verdict.STANDS or high is Verdict.COLLAPSES for low, high in ends)
+    undecided = sum(Verdict.UNDECIDED in each for each in ends)
+    asked = sum(said is not None for each in ends for said in each)
     parts.append(
         f"of {asked} verdicts {_percent(ASIDE)} to either side of it "
         f"{false or 'none'} {'is' if false <= 1 else 'are'} false and "
@@ -110,7 +111,7 @@ def summary(rows: Sequence[Validation]) -> str:
     return "; ".join(parts) + "."
 
 
-def _asides(rows: Sequence[StructureRow]) -> str:
+def _asides(rows: Sequence[Row]) -> str:
     """Say how far inside and beyond each engine was asked."""
     engines = dict.fromkeys(row.method for row in rows if row.method not in STATIC)
     return ", ".join(
@@ -118,16 +119,16 @@ def _asides(rows: Sequence[StructureRow]) -> str:
     )
 
 
-def _case(number: int, rows: Sequence[Validation]) -> dict[str, Any]:
-    """Return a scenario as the page shows it, with what every engine showed of it."""
+def _case(number: int, rows: Sequence[Row]) -> dict[str, Any]:
+    """Return an arch as the page shows it, with what every engine showed of it."""
     anchor = f"case-{number}"
     results = [_result(row, f"{anchor}-{place}") for place, row in enumerate(rows)]
     return {"number": number, "anchor": anchor, "row": rows[0], "results": results}
 
 
-def _result(row: Validation, anchor: str) -> dict[str, Any]:
+def _result(row: Row, anchor: str) -> dict[str, Any]:
     """Return a row as the page shows it."""
-    low, high = row.eta_low, row.eta_high
+    low, high = row.low, row.high
     if high is None:
         bracket = "none up to 2"
     elif low is None:
@@ -135,7 +136,7 @@ def _result(row: Validation, anchor: str) -> dict[str, Any]:
     else:
         bracket = f"{low:.6g} to {high:.6g}"
     ends = [eta for eta in (low, high) if eta is not None]
-    nothing = not ends or (high is None and row.eta_limit is None)
+    nothing = not ends or (high is None and row.expected is None)
     # Nothing thinner than eta = 2 stands: there is no least thickness to be aside of.
     thickest = low is not None and high is None
     shown: dict[str, Any] = {"drawing": None}

@@ -8,13 +8,13 @@ from typing import Any
 from blocksim.engines import engine_named
 from blocksim.report.motion import mechanism_drawing
 from blocksim.simulation.verdict import Verdict
-from blocksim.studies.questions import StructureRow
+from blocksim.studies.agreement import Row
 
 QUANTITIES = {"load": "load factor", "mu": "friction", "pier_width": "pier width"}
 """Parameters in words, where their names are none."""
 
 
-def shown_structures(rows: Sequence[StructureRow]) -> list[dict[str, Any]]:
+def shown_structures(rows: Sequence[Row]) -> list[dict[str, Any]]:
     """Gather rows by structure and question."""
     names = dict.fromkeys(row.structure for row in rows)
     return [
@@ -23,7 +23,7 @@ def shown_structures(rows: Sequence[StructureRow]) -> list[dict[str, Any]]:
     ]
 
 
-def _shown(number: int, rows: list[StructureRow]) -> dict[str, Any]:
+def _shown(number: int, rows: list[Row]) -> dict[str, Any]:
     """Return a structure with all that was asked about it, and how it falls."""
     questions = dict.fromkeys(row.question for row in rows)
     falls = [row for row in rows if row.drawn is not None and row.drawn.rates is not None]
@@ -50,7 +50,7 @@ def _shown(number: int, rows: list[StructureRow]) -> dict[str, Any]:
     }
 
 
-def _asked(rows: list[StructureRow]) -> dict[str, Any]:
+def _asked(rows: list[Row]) -> dict[str, Any]:
     """Return a question about a structure, and every method's answer."""
     first = rows[0]
     known = "stands at any" if first.expected == 0 else f"{first.expected or 0:.8g}"
@@ -65,7 +65,7 @@ def _asked(rows: list[StructureRow]) -> dict[str, Any]:
     }
 
 
-def _told(row: StructureRow) -> tuple[str, str]:
+def _told(row: Row) -> tuple[str, str]:
     """Say what is drawn: a caption, and words for those who do not see it."""
     # The end of what was asked at which it falls, or stands if it does not.
     at = row.low if row.at_low is Verdict.COLLAPSES else row.high
@@ -97,7 +97,7 @@ EXACT = 1e-12
 """Relative differences below this are round-off, and said to be none."""
 
 
-def summary_of_structures(rows: Sequence[StructureRow]) -> str:
+def summary_of_structures(rows: Sequence[Row]) -> str:
     """Say in a sentence how many answers agree with what is known."""
     count = len({row.structure for row in rows})
     agree = sum(not row.miss for row in rows)
@@ -105,13 +105,13 @@ def summary_of_structures(rows: Sequence[StructureRow]) -> str:
     return f"{share} answers on {count} other structures agree with their sources."
 
 
-def question_of(row: StructureRow) -> str:
+def question_of(row: Row) -> str:
     """Say what is asked, with its unit."""
     words = QUESTIONS.get(row.question, row.question.replace("_", " "))
     return f"{words} [{row.unit}]" if row.unit else words
 
 
-def found_of(row: StructureRow) -> str:
+def found_of(row: Row) -> str:
     """Say what a method answered."""
     if row.verdict is not None:
         return row.verdict.value
@@ -132,7 +132,7 @@ DOES = {
 }
 
 
-def error_of(row: StructureRow) -> str:
+def error_of(row: Row) -> str:
     """Say how far an answer is from what is known, or how near it was asked."""
     if row.error is not None:
         return "none" if abs(row.error) < EXACT else f"{row.error:+.1e}"

@@ -18,9 +18,9 @@ from blocksim.common.sheets import sheet_of
 from blocksim.engines import ENGINES, NAMES, engine_named
 from blocksim.report.inlinemap import PAGE
 from blocksim.report.page import report_page
-from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
+from blocksim.studies.agreement import Row, Unasked, disagreements, numbered, parted
 from blocksim.studies.questions import NEAR, SLOWLY
-from blocksim.studies.validate import ASIDE, ERROR_BOUND, Row, parted
+from blocksim.studies.thickness import ASIDE, ERROR_BOUND
 from blocksim.view.drawing import save_figure
 from blocksim.view.mapfigure import MapPoint, map_figure
 
@@ -37,7 +37,7 @@ def as_record(row: Row) -> dict[str, object]:
     for name in (each.name for each in fields(row)):
         value: Any = getattr(row, name)
         if name == "half_angle":
-            record["half_angle_deg"] = math.degrees(value)
+            record["half_angle_deg"] = None if value is None else math.degrees(value)
         elif name in LISTS:
             record[name] = LISTS[name].join(map(str, value))
         elif name not in {"recording", "drawn"}:
@@ -73,30 +73,28 @@ def write_results(
 ) -> list[Path]:
     """Write report.html, validate.json, validate.csv, map.png and map.svg into a folder.
 
-    `found`: Where some are on structures, structures.csv is written, too.
     `unasked`: What was not asked, and why; said in the page and in the JSON.
     """
-    rows, structures = parted(found)
-    records = [as_record(row) for row in rows]
-    built = [as_record(row) for row in structures]
-    asked = [row.engine for row in rows] + [row.method for row in structures]
+    arches, _ = parted(found)
+    records = [as_record(row) for row in found]
     engines = [ENGINES[name] for name in NAMES]
-    engines += [engine_named(name) for name in dict.fromkeys(asked) if name not in METHODS]
-    tols = {engine.name: engine.validated_to for engine in engines}
-    asides = {engine.name: engine.aside for engine in engines}
-    settings = {"tol": tols, "error_bound": ERROR_BOUND, "aside": ASIDE}
+    asked = dict.fromkeys(row.method for row in found)
+    engines += [engine_named(name) for name in asked if name not in METHODS]
     document = {
         "machine": machine(),
-        "settings": settings,
-        "rows": records,
-        "disagreements": disagreements(rows),
-        "not_asked": list(unasked),
-        "structures": {
-            "settings": {"aside": asides, "near": NEAR, "slowly": SLOWLY},
-            "rows": built,
+        "settings": {
+            "tol": {engine.name: engine.validated_to for engine in engines},
+            "error_bound": ERROR_BOUND,
+            "arches_aside": ASIDE,
+            "aside": {engine.name: engine.aside for engine in engines},
+            "near": NEAR,
+            "slowly": SLOWLY,
         },
+        "rows": records,
+        "disagreements": disagreements(arches),
+        "not_asked": list(unasked),
     }
-    figure = map_figure(_points(rows), title="Simulated arches on the analytical mode map")
+    figure = map_figure(_points(arches), title="Simulated arches on the analytical mode map")
     drawn = pictures("map", figure)
     page = report_page(found, drawn["map.svg"], machine(), unasked)
     contents = {
@@ -104,8 +102,6 @@ def write_results(
         "validate.json": as_json(document),
         "validate.csv": _sheet(records),
     }
-    if built:
-        contents["structures.csv"] = _sheet(built)
     return write_folder(folder, {**contents, **drawn})
 
 
@@ -130,27 +126,27 @@ def pictures(name: str, figure: Figure) -> dict[str, bytes]:
     return drawn
 
 
-def _points(rows: Sequence[Validation]) -> list[MapPoint]:
+def _points(rows: Sequence[Row]) -> list[MapPoint]:
     """Place each arch at the middle of its bracket, or at eta = 2 where none stands."""
     points: list[MapPoint] = []
     numbers = numbered(rows)
-    first = next((row.engine for row in rows), "")
+    first = next((row.method for row in rows), "")
     for row in rows:
-        high = row.eta_high if row.eta_high is not None else row.eta_low
-        if high is None or row.eta_low is None:
+        high = row.high if row.high is not None else row.low
+        if high is None or row.low is None:
             continue
         points.append(
             MapPoint(
                 mu=row.mu,
-                eta=(row.eta_low + high) / 2,
-                mode=row.mode_observed,
-                label=str(numbers[row.scenario]) if row.engine == first else "",
-                engine=row.engine,
-                outline=row.engine != first,
+                eta=(row.low + high) / 2,
+                mode=row.mode,
+                label=str(numbers[row.structure]) if row.method == first else "",
+                engine=row.method,
+                outline=row.method != first,
                 miss=bool(row.miss),
-                note=row.scenario,
-                none_stands=row.eta_high is None,
-                link=f"{PAGE}#row-{numbers[row.scenario]}",
+                note=row.structure,
+                none_stands=row.high is None,
+                link=f"{PAGE}#row-{numbers[row.structure]}",
             )
         )
     return points

@@ -1,25 +1,26 @@
 """Questions about a structure whose answer is known, answered by one method at a time.
 
 Limit analysis gives the value; engines are asked a little to both sides of the one expected,
-and supports that spread are followed by `direct`.
+supports that spread are followed by `direct`, and arches whose modes are known are asked how
+thin they can be.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import Check, check
 from blocksim.ask.families import Family, family_of
-from blocksim.blocks.assembly import Array
 from blocksim.blocks.entries import ExpectEntry
 from blocksim.blocks.joints import JointState
-from blocksim.blocks.problem import Problem
 from blocksim.engines import engine_named
 from blocksim.kinds.loading import Known
 from blocksim.simulation.verdict import Verdict
+from blocksim.studies.agreement import Drawn, Row
+from blocksim.studies.thickness import thinnest
 
 SHAKEN = 0.01
 """How far inside and beyond the value expected any engine is asked where ground shakes."""
@@ -32,62 +33,16 @@ BEYOND = 1e-6
 """How far beyond its value limit analysis shows how a structure falls, relative."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Drawn:
-    """A structure as it falls, by rates as of `Check.mechanism`, or stands, without."""
-
-    problem: Problem
-    rates: Array | None
-    states: tuple[JointState, ...]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class StructureRow:
-    """One question about a structure, answered by one method, against what is known.
-
-    Fields are the columns of structures.csv, as docs/guide/formats.md has them. `value` is by
-    limit analysis, or the centre of the bracket of supports that spread; `error` is relative,
-    but the difference where 0 is expected; `drawn` is how it falls.
-    """
-
-    structure: str
-    title: str
-    source: str
-    blocks: int
-    mu: float
-    question: str
-    unit: str = ""
-    expected: float | None = None
-    published: str = ""
-    expected_verdict: Verdict | None = None
-    expected_hinges: tuple[int, ...] = ()
-    method: str = "limit"
-    value: float | None = None
-    error: float | None = None
-    digits: bool | None = None
-    low: float | None = None
-    high: float | None = None
-    at_low: Verdict | None = None
-    at_high: Verdict | None = None
-    verdict: Verdict | None = None
-    hinges: tuple[int, ...] = ()
-    miss: str = ""
-    note: str = ""
-    wall_s: float = 0.0
-    drawn: Drawn | None = None
-
-
-def answer(known: Known, expected: ExpectEntry, method: str) -> StructureRow:
+def answer(known: Known, expected: ExpectEntry, method: str) -> Row:
     """Answer one question by one method, and compare."""
     started = time.perf_counter()
     problem = known.problem
-    row = StructureRow(
+    row = Row(
         structure=known.name,
         title=problem.title,
         source=problem.source,
         blocks=len(problem.assembly.blocks),
         mu=problem.mu,
-        question="",
         published=expected.published or "",
         expected_hinges=expected.hinges,
         method=method,
@@ -97,7 +52,7 @@ def answer(known: Known, expected: ExpectEntry, method: str) -> StructureRow:
     return replace(row, wall_s=time.perf_counter() - started)
 
 
-def _judged(row: StructureRow, known: Known, expected: ExpectEntry) -> StructureRow:
+def _judged(row: Row, known: Known, expected: ExpectEntry) -> Row:
     """Ask whether it stands as it is."""
     wanted = Verdict(expected.verdict)
     # Engines as they are, as arches are asked.
@@ -115,7 +70,7 @@ def _judged(row: StructureRow, known: Known, expected: ExpectEntry) -> Structure
     )
 
 
-def _valued(row: StructureRow, known: Known, expected: ExpectEntry) -> StructureRow:
+def _valued(row: Row, known: Known, expected: ExpectEntry) -> Row:
     """Ask for the value of a parameter at which it changes from standing to falling."""
     family = family_of(known.problem, expected.over or "")
     value, still = expected.value or 0.0, known.problem.shaking is None
@@ -127,14 +82,15 @@ def _valued(row: StructureRow, known: Known, expected: ExpectEntry) -> Structure
     return _aside(row, family, value, engine_named(row.method).aside if still else SHAKEN)
 
 
-QUESTIONS: dict[str, Callable[[StructureRow, Known, ExpectEntry], StructureRow]] = {
+QUESTIONS: dict[str, Callable[[Row, Known, ExpectEntry], Row]] = {
     "verdict": _judged,
     "over": _valued,
+    "modes": thinnest,
 }
 """Answers by the key of an expectation. Another question is one more of them."""
 
 
-def _exactly(row: StructureRow, family: Family, value: float) -> StructureRow:
+def _exactly(row: Row, family: Family, value: float) -> Row:
     """Take the value from limit analysis, and how it falls just beyond it."""
     found = family.exact()
     error = None if found is None else found / value - 1 if value else found
@@ -167,7 +123,7 @@ def _exactly(row: StructureRow, family: Family, value: float) -> StructureRow:
     )
 
 
-def _aside(row: StructureRow, family: Family, value: float, aside: float) -> StructureRow:
+def _aside(row: Row, family: Family, value: float, aside: float) -> Row:
     """Ask an engine a little to both sides of the value expected."""
     # Where it stands down to nothing there is one side only: the smallest that can be built.
     low, high = (value * (1 - aside), value * (1 + aside)) if value else (None, family.low)
@@ -201,7 +157,7 @@ def _aside(row: StructureRow, family: Family, value: float, aside: float) -> Str
     )
 
 
-def _slowly(row: StructureRow, family: Family, value: float) -> StructureRow:
+def _slowly(row: Row, family: Family, value: float) -> Row:
     """Move the supports slowly."""
     seen = bracket(family, method=row.method, tol=SLOWLY)
     low, high = seen.low, seen.high
@@ -233,7 +189,7 @@ def _open(states: Sequence[JointState]) -> tuple[int, ...]:
     return tuple(at for at, state in enumerate(states) if state is not JointState.CLOSED)
 
 
-def _other_hinges(row: StructureRow, hinges: tuple[int, ...]) -> list[str]:
+def _other_hinges(row: Row, hinges: tuple[int, ...]) -> list[str]:
     if not row.expected_hinges or hinges == row.expected_hinges:
         return []
     return [f"opens at joints {', '.join(map(str, hinges)) or 'none'}"]

@@ -15,15 +15,16 @@ from windows import Windows
 def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = tmp_path_factory.mktemp("explorer")
     row = {
-        "engine": "pymunk", "weight": "centreline", "voussoirs": 27, "mode_observed": "rrr",
-        "miss": "", "eta_low": 0.106, "eta_high": 0.107, "half_angle_deg": 90.0, "mu": 0.7,
+        "method": "pymunk", "weight": "centreline", "blocks": 27, "mode": "rrr",
+        "modes_published": "rrr",
+        "miss": "", "low": 0.106, "high": 0.107, "half_angle_deg": 90.0, "mu": 0.7,
     }  # fmt: skip
     rows = [
-        {**row, "scenario": "semicircle"},
-        {**row, "scenario": "unbounded", "mu": "inf", "mode_observed": None, "miss": "mode"},
-        {**row, "scenario": "much", "mu": 10.0, "eta_low": 0.85, "eta_high": 0.86},
-        {**row, "scenario": "sector", "weight": "sector", "half_angle_deg": 120.0,
-         "eta_low": 0.3, "eta_high": 0.31, "mu": 1.5},
+        {**row, "structure": "semicircle"},
+        {**row, "structure": "unbounded", "mu": "inf", "mode": None, "miss": "mode"},
+        {**row, "structure": "much", "mu": 10.0, "low": 0.85, "high": 0.86},
+        {**row, "structure": "sector", "weight": "sector", "half_angle_deg": 120.0,
+         "low": 0.3, "high": 0.31, "mu": 1.5},
     ]  # fmt: skip
     results = folder / "validate.json"
     results.write_text(json.dumps({"rows": rows}), encoding="utf-8")
