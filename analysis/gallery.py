@@ -13,14 +13,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
 
 from analysis.command import run
 from analysis.drawing import few_colours
@@ -29,9 +27,10 @@ from blocksim.ask.families import family_of
 from blocksim.blocks.assembly import Array
 from blocksim.engines.ground import ground_level
 from blocksim.kinds.loading import load_known
-from blocksim.view.arrows import draw_forces, draw_loads
-from blocksim.view.drawing import clipped
-from blocksim.view.style import FONT, GROUND, INK, LIVE, QUIET, STONE
+from blocksim.limit.displaced import moved
+from blocksim.view.arrows import draw_forces, draw_gravity
+from blocksim.view.structure import draw_structure
+from blocksim.view.style import FONT, GROUND, QUIET
 
 SHOWN = {
     "pointed_e0_25": ("Pointed arch", "least thickness {:.4f} m"),
@@ -60,8 +59,6 @@ FRICTION = 1.0
 fall on each other need not stop dead."""
 AROUND = 0.3
 """How far beyond the blocks the pictures of the sheet reach [size]."""
-TILTED = 1e-9
-"""Gravity across the plane's vertical from which on it is tilted [g]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,11 +106,8 @@ def sheet(seen: Sequence[Shown]) -> Figure:
     """Draw all structures: above as they stand, below as they fall."""
     columns = min(4, len(seen))
     lines = math.ceil(len(seen) / columns)
-    frames = [_falling(each.fall) for each in seen]
-    boxes = [
-        _box(each.fall, (each.fall.poses[0], each.fall.poses[frame]))
-        for each, frame in zip(seen, frames, strict=True)
-    ]
+    pairs = [(each.problem, _falling(each.fall)) for each in seen]
+    boxes = [_box(pair) for pair in pairs]
     tall = [float((high - low)[1] / (high - low)[0]) for low, high in boxes]
     heights = [min(1.2, max(tall[at : at + columns])) for at in range(0, len(tall), columns)]
     wide = 2.9
@@ -122,22 +116,22 @@ def sheet(seen: Sequence[Shown]) -> Figure:
         figure = Figure(figsize=size, layout="constrained")
         ratios = [wide * each + more for each in heights for more in (0.6, 0.15)]
         axes = figure.subplots(2 * lines, columns, squeeze=False, height_ratios=ratios)
-        for place, each in enumerate(seen):
-            problem, fall = each.problem, each.fall
+        for place, (each, problems) in enumerate(zip(seen, pairs, strict=True)):
             line, column = divmod(place, columns)
-            above, below = axes[2 * line, column], axes[2 * line + 1, column]
+            above, below = axes[2 * line : 2 * line + 2, column]
             title, words = SHOWN[each.name]
             expected = next(one for one in load_known(each.name).expect if one.over)
             above.set_title(f"{title}\n", fontsize=11)
             above.annotate(words.format(expected.value), (0, 1), xytext=(0, 6),
                            xycoords="axes fraction", textcoords="offset points",
                            color=QUIET)  # fmt: skip
-            box = _shaped(boxes[place], heights[line])
-            _blocks(above, problem, None, box)
-            extent = 2 * problem.assembly.size
-            draw_forces(above, problem, each.forces, extent)
-            _actions(above, problem)
-            _blocks(below, fall.problem, _placed(fall, fall.poses[frames[place]]), box)
+            low, high = _shaped(boxes[place], heights[line])
+            for panel, problem in zip((above, below), problems, strict=True):
+                shown = draw_structure(panel, problem)
+                draw_gravity(panel, problem, np.concatenate(shown))
+                panel.axhline(ground_level(problem.assembly), color=GROUND, lw=1, zorder=0.4)
+                panel.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+            draw_forces(above, each.problem, each.forces, 2 * each.problem.assembly.size)
         for empty in axes.ravel():
             empty.axis("off")
     return figure
@@ -154,78 +148,22 @@ def _shaped(box: tuple[Array, Array], tall: float) -> tuple[Array, Array]:
     )
 
 
-def _falling(fall: Recording) -> int:
-    """Choose a frame of a fall at which it is seen, and not yet over."""
-    moved = np.maximum.accumulate(fall.displacement)
-    return int(np.searchsorted(moved, min(FALLING, SHARE * float(moved[-1]))))
+def _falling(fall: Recording) -> Problem:
+    """Return a problem as its fall is seen, and not yet over; nothing is pushed any more."""
+    far = np.maximum.accumulate(fall.displacement)
+    frame = int(np.searchsorted(far, min(FALLING, SHARE * float(far[-1]))))
+    poses = fall.poses[frame, :, :3] * [fall.assembly.size, fall.assembly.size, 1.0]
+    blocks = tuple(map(moved, fall.assembly.blocks, poses))
+    assembly = replace(fall.assembly, blocks=blocks, joints=())
+    return replace(fall.problem, assembly=assembly, dead=(), live=(), road=(), maker=None)
 
 
-def _actions(axes: Axes, problem: Problem) -> None:
-    """Draw a load on a block where it acts; what acts on all blocks as one arrow beside."""
-    if problem.live and not problem.live[0].per_weight:
-        draw_loads(axes, problem, 2 * problem.assembly.size)
-        return
-    pull = problem.gravity[:2]
-    tilted = abs(float(pull[0])) > TILTED
-    way, tone = (
-        (pull, QUIET) if tilted else (problem.live[0].force if problem.live else None, LIVE)
-    )
-    if way is None:
-        return
-    corners = np.concatenate([block.vertices for block in problem.assembly.blocks])
-    long = AROUND * problem.assembly.size * way / np.hypot(*way)
-    # To the left of the blocks, half way up.
-    left = float(corners[:, 0].min()) - 0.1 * problem.assembly.size
-    tip = np.array([left, float(corners[:, 1].mean()) + min(0.0, float(long[1])) / 2])
-    start = tip - long
-    axes.annotate("", tip, start, annotation_clip=False,
-                  arrowprops={"arrowstyle": "-|>", "color": tone, "lw": 1.6})  # fmt: skip
-
-
-def _box(fall: Recording, poses: Sequence[Array]) -> tuple[Array, Array]:
+def _box(problems: Sequence[Problem]) -> tuple[Array, Array]:
     """Frame the blocks at two moments [m]."""
-    corners = np.concatenate(
-        [corner for pose in poses for parts in _placed(fall, pose) for corner in parts]
-    )
-    around = AROUND * fall.assembly.size
-    low, high = corners.min(axis=0) - around, corners.max(axis=0) + around
-    low[1] += around / 2
-    return low, high
-
-
-def _placed(run: Recording, poses: Array) -> list[list[Array]]:
-    """Return the polygons of each block where it is [m]."""
-    size = run.assembly.size
-    placed: list[list[Array]] = []
-    for block, (x, y, turn) in zip(run.assembly.blocks, poses[:, :3].tolist(), strict=True):
-        cos, sin = math.cos(turn), math.sin(turn)
-        spun = np.array([[cos, sin], [-sin, cos]])
-        at = np.array([x, y]) * size
-        placed.append([(part - block.centre) @ spun + at for part in block.polygons])
-    return placed
-
-
-def _blocks(
-    axes: Axes, problem: Problem, placed: list[list[Array]] | None, box: tuple[Array, Array]
-) -> None:
-    """Draw blocks where they are, on what they stand."""
-    low, high = box
-    assembly = problem.assembly
-    for support in assembly.supports:
-        for part in support.polygons:
-            foot = clipped(part, low, high)
-            if len(foot):
-                axes.add_patch(Polygon(foot, fc=GROUND, ec="none", zorder=0.5))
-    polygons = placed or [list(block.polygons) for block in assembly.blocks]
-    for parts in polygons:
-        for part in parts:
-            axes.add_patch(Polygon(part, fc=STONE, ec=INK, lw=0.6, zorder=1))
-    axes.set_aspect("equal")
-    axes.set_xlim(low[0], high[0])
-    axes.set_ylim(low[1], high[1])
-    level = ground_level(assembly)
-    if low[1] < level:
-        axes.axhline(level, color=GROUND, lw=1, zorder=0.4)
+    blocks = [block for each in problems for block in each.assembly.blocks]
+    corners = np.concatenate([block.vertices for block in blocks])
+    around = AROUND * problems[0].assembly.size
+    return corners.min(axis=0) - [around, around / 2], corners.max(axis=0) + around
 
 
 if __name__ == "__main__":

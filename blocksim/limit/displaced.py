@@ -146,7 +146,7 @@ class Displaced:
         places[:, :2] *= size
         points = self._points(frame) * size
         blocks = tuple(
-            _moved(block, pose)
+            moved(block, pose)
             for block, pose in zip(asked.assembly.blocks, places, strict=True)
         )
         joints: list[Joint] = []
@@ -311,8 +311,8 @@ def _turned(arm: Array, turn: Array | float) -> Array:
     return np.array([cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1]])
 
 
-def _moved(block: Block, pose: Array) -> Block:
-    """Return a block where it lies."""
+def moved(block: Block, pose: Array) -> Block:
+    """Return a block where it lies: its centre x, y [m], and its turn."""
     x, y, turn = pose.tolist()
 
     def carried(points: Array) -> Array:

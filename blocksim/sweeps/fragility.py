@@ -134,14 +134,7 @@ def fragility(
     [1.0]
     """
     given, problem = taken(options, "reduce", "tol", "confirm"), problem_of(asked)
-    questions = len(records) * len(amplitudes)
-    allowed = f"1 to {MOST}, as there are records times amplitudes"
-    require(1 <= questions <= MOST, "questions", questions, allowed)
-    # The farthest first.
-    for each in sorted(amplitudes, key=abs, reverse=True):
-        AMPLITUDE.require("amplitudes", each)
-    grow = all(low < high for low, high in pairwise(amplitudes))
-    require(grow, "amplitudes", list(amplitudes), "growing")
+    _require_asked(records, amplitudes)
     problems = tuple(replace(problem, shaking=record) for record in records.values())
     chosen: Method = choose(given.method, problem=problems[0], settings=given.settings)
     overrides = tuple(sorted(given.settings.items()))
@@ -161,3 +154,15 @@ def fragility(
         amplitudes=np.array(amplitudes, dtype=float),
         verdicts=tuple(tuple(said[at : at + wide]) for at in range(0, len(said), wide)),
     )
+
+
+def _require_asked(records: Mapping[str, Shaking], amplitudes: Sequence[float]) -> None:
+    """Raise `InputError` unless there are some and not too many, and amplitudes grow."""
+    questions = len(records) * len(amplitudes)
+    allowed = f"1 to {MOST}, as there are records times amplitudes"
+    require(1 <= questions <= MOST, "questions", questions, allowed)
+    # The farthest first.
+    for each in sorted(amplitudes, key=abs, reverse=True):
+        AMPLITUDE.require("amplitudes", each)
+    grow = all(low < high for low, high in pairwise(amplitudes))
+    require(grow, "amplitudes", list(amplitudes), "growing")

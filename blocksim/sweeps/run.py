@@ -132,10 +132,9 @@ def sweep(
     require(workers >= 1, "workers", workers, "at least 1")
     require(in_flight is None or in_flight >= 1, "in_flight", in_flight, "at least 1")
     make_folder(folder := Path(folder))
-    with locked(folder):
+    with locked(folder), Hands(workers, executor) as hands:
         todo.done = identities(folder)
-        with Hands(workers, executor) as hands:
-            tally = _answered(todo, folder, hands, in_flight or 2 * workers, progress)
+        tally = _answered(todo, folder, hands, in_flight or 2 * workers, progress)
     return Summary(
         cases=todo.found + tally.rows,
         found=todo.found,
