@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,8 +73,77 @@ def _mean(corners: list[list[float]]) -> tuple[float, float]:
     return sum(x) / len(x), sum(y) / len(y)
 
 
+class Bodies(ABC):
+    """What blocks and their joints are in the plane and in space alike."""
+
+    dimensions: ClassVar[int]
+    columns: ClassVar[int]
+    down: ClassVar[tuple[float, ...]]
+
+    blocks: Any
+    joints: Any
+    size: Any
+
+    @property
+    @abstractmethod
+    def corners(self) -> Sequence[Array]:
+        """Corners of each block, (k, 2 or 3) [m]."""
+
+    @cached_property
+    def reach(self) -> Array:
+        """Largest distance of a corner from the centre of mass, shape (blocks,) [m]."""
+        count = np.array([len(each) for each in self.corners])
+        arms = np.concatenate(self.corners) - np.repeat(self.centres, count, axis=0)
+        far = np.hypot.reduce(arms, axis=1)
+        return frozen(np.maximum.reduceat(far, count.cumsum() - count), (-1,))
+
+    @cached_property
+    def friction(self) -> Array:
+        """Friction coefficient of each joint, (joints,); nan where it has none of its own."""
+        own = column(self.joints, "friction")
+        return frozen([math.nan if each is None else each for each in own], (-1,))
+
+    @cached_property
+    def centres(self) -> Array:
+        """Centres of mass, shape (blocks, 2 or 3) [m]."""
+        return frozen(column(self.blocks, "centre"), (-1, self.dimensions))
+
+    @cached_property
+    def built(self) -> Array:
+        """Poses as built, in units of the size; then that of the ground, index `SUPPORT`.
+
+        Shape (blocks + 1, 3 or 6).
+        """
+        poses = np.zeros((len(self.blocks) + 1, self.columns))
+        poses[:-1, : self.dimensions] = self.centres / self.size
+        return frozen(poses, (-1, self.columns))
+
+    @cached_property
+    def sides(self) -> NDArray[np.int64]:
+        """Blocks before and after each joint, shape (2, joints)."""
+        sides = [column(self.joints, "before"), column(self.joints, "after")]
+        return np.array(sides, dtype=np.int64)
+
+    def displacement(self, moved: Array) -> Array:
+        """Bound of the displacement of any corner, from those of the centres.
+
+        Parameters
+        ----------
+        moved : (..., blocks, 3 or 6) float
+            Displacements of the centres, in units of the size, and rotations.
+
+        Returns
+        -------
+        (...) float
+            Largest over the blocks of the translation or a corner's way by rotation.
+        """
+        ways, turns = moved[..., : self.dimensions], moved[..., self.dimensions :]
+        shift, turn = (np.einsum("...i,...i", each, each) for each in (ways, turns))
+        return np.sqrt(np.maximum(shift, turn * (self.reach / self.size) ** 2)).max(axis=-1)
+
+
 @dataclass(frozen=True, eq=False)
-class Assembly:
+class Assembly(Bodies):
     """Blocks and the joints between them.
 
     Parameters
@@ -116,16 +186,6 @@ class Assembly:
             if ahead == {False}:
                 joints[index] = joint.turned
         object.__setattr__(self, "joints", tuple(joints))
-
-    @property
-    def friction(self) -> Array:
-        """Friction coefficient of each joint, (joints,); nan where it has none of its own."""
-        return self.joint_arrays.friction
-
-    @cached_property
-    def centres(self) -> Array:
-        """Centres of mass, shape (blocks, 2) [m]."""
-        return frozen(column(self.blocks, "centre"), (-1, 2))
 
     @cached_property
     def masses(self) -> Array:
@@ -179,29 +239,10 @@ class Assembly:
         """Depth of each block, shape (blocks,), in units of the size."""
         return frozen(np.array(column(self.blocks, "depth")) / self.size, (-1,))
 
-    @cached_property
-    def reach(self) -> Array:
-        """Largest distance of a corner from the centre of mass, shape (blocks,) [m]."""
-        outlines = column(self.blocks, "vertices")
-        count = np.array([len(corners) for corners in outlines])
-        x, y = (np.concatenate(outlines) - np.repeat(self.centres, count, axis=0)).T
-        return frozen(np.maximum.reduceat(np.hypot(x, y), count.cumsum() - count), (-1,))
-
-    @cached_property
-    def built(self) -> Array:
-        """Poses as built, in units of the size; then that of the ground, index `SUPPORT`.
-
-        Shape (blocks + 1, 3).
-        """
-        poses = np.zeros((len(self.blocks) + 1, PLANAR))
-        poses[:-1, :2] = self.centres / self.size
-        return frozen(poses, (-1, PLANAR))
-
-    @cached_property
-    def sides(self) -> NDArray[np.int64]:
-        """Blocks before and after each joint, shape (2, joints)."""
-        sides = [column(self.joints, "before"), column(self.joints, "after")]
-        return np.array(sides, dtype=np.int64)
+    @property
+    def corners(self) -> Sequence[Array]:
+        """Corners of each block, or of the hull of its polygons, (k, 2) [m]."""
+        return cast("Sequence[Array]", column(self.blocks, "vertices"))
 
     @cached_property
     def joint_arrays(self) -> JointArrays:
@@ -209,7 +250,6 @@ class Assembly:
         joints = self.joints
         ends = np.array([column(joints, "inner"), column(joints, "outer")], np.float64)
         ends = ends.reshape(2, -1, 2).transpose(1, 0, 2)
-        own = [np.nan if each is None else each for each in column(joints, "friction")]
         is_corner = np.array([each is not None for each in column(joints, "across")], np.bool_)
         own_faces = column(joints, "faces")
         given = np.array([each is not None for each in own_faces], np.bool_)
@@ -229,7 +269,7 @@ class Assembly:
             normal=frozen(tangent[:, ::-1] * [1.0, -1.0], (-1, 2)),
             tangent=frozen(tangent, (-1, 2)),
             length=frozen(length / self.size, (-1,)),
-            friction=frozen(own, (-1,)),
+            friction=self.friction,
             faces=frozen(faces / self.size, (-1, 2, 2, 2)),
             is_corner=is_corner,
             carrier=(is_corner & at_corner).astype(np.int64),
@@ -280,21 +320,3 @@ class Assembly:
         joints = self.joint_arrays
         lengths = joints.length[~joints.is_corner]
         return float(lengths.min()) if len(lengths) else 1.0
-
-    def displacement(self, moved: Array) -> Array:
-        """Bound of the displacement of any corner, from those of the centres.
-
-        Parameters
-        ----------
-        moved : (..., blocks, 3) float
-            Displacements of the centres, in units of the size, and rotations.
-
-        Returns
-        -------
-        (...) float
-            Largest over the blocks of the translation or the corner's way by rotation.
-        """
-        reach = (self.reach / self.size) ** 2
-        square = moved**2
-        shift, turn = square[..., 0] + square[..., 1], square[..., 2] * reach
-        return np.sqrt(np.maximum(shift, turn)).max(axis=-1)

@@ -46,7 +46,7 @@ def on_road(
     profile, count = profile_of(assembly), len(assembly.blocks)
     found = profile.at(low) if low == high else profile.along(low, high)
     borne = found is not None and all(index < count for index, _, _ in found)
-    corners = np.concatenate([block.vertices for block in assembly.blocks])[:, 0]
+    corners = np.concatenate(assembly.corners)[:, 0]
     allowed = f"above blocks: they reach from x = {corners.min():.6g} to {corners.max():.6g} m"
     given = f"{low:g} m" if low == high else f"{low:g} to {high:g} m"
     require(borne, field, given, allowed)

@@ -19,8 +19,8 @@ DEPTH = 0.5
 def ground_level(assembly: Assembly) -> float:
     """Height of the ground [m]."""
     if assembly.supports:
-        blocks = [block.vertices for block in assembly.blocks]
-        return min(float(each[:, 1].min()) for each in (*standing(assembly), *blocks))
+        bodies = (*standing(assembly), *assembly.corners)
+        return min(float(each[:, 1].min()) for each in bodies)
     ends = [end for face in _faces(assembly) for end in face]
     return float(min(end[1] for end in ends)) - DEPTH * assembly.size
 

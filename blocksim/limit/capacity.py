@@ -31,14 +31,16 @@ class Collapse:
 
     `load_factor`: None where there is no equilibrium at any factor; inf where no live load is
         too much.
-    `forces`, (joints, 2, 2): At collapse; as of `Equilibrium`.
-    `mechanism`, (blocks, 3): Rates x, y and rotation as the blocks begin to move, the largest
-        of them 1.
+    `mechanism`, (blocks, 3 or 6): Rates as the blocks begin to move: x, y and rotation, the
+        largest of them 1; in space as of `SpatialEquilibrium`.
+    `forces`, (joints, 2, 2): At collapse, as of `Equilibrium`; None in space.
+    `gap`: By how much, of the factor, forces and mechanism disagree in space.
     """
 
     load_factor: float | None
-    forces: Array | None
-    mechanism: Array | None
+    mechanism: Array | None = None
+    forces: Array | None = None
+    gap: float = 0.0
 
 
 class Capacity:
@@ -107,7 +109,7 @@ class Capacity:
         cones = self.cones
         if not found.exists:
             factor = math.inf if found.unbounded else None
-            return Collapse(load_factor=factor, forces=None, mechanism=None)
+            return Collapse(load_factor=factor)
         return Collapse(
             load_factor=float(found.values[-1]) + 0.0,
             forces=cones.forces(found.values[:-1]),

@@ -121,8 +121,7 @@ class Exact:
     @cached_property
     def allowed(self) -> list[list[int]]:
         """What may be left on each block, in units of force, and of that times the grain."""
-        centres = self.problem.assembly.centres
-        shapes = _corners(self.problem)
+        centres, shapes = self.problem.assembly.centres, self.problem.assembly.corners
         count = np.array([len(shape) for shape in shapes])
         arms = np.concatenate(shapes) - np.repeat(centres, count, axis=0)
         reach = np.maximum.reduceat(np.abs(arms).sum(axis=1), count.cumsum() - count)
@@ -186,13 +185,3 @@ def _weights(problem: Problem[Any]) -> list[float]:
         return problem.assembly.weights.tolist()
     masses: list[float] = np.asarray(column(problem.assembly.blocks, "mass")).tolist()
     return [mass * STANDARD_GRAVITY for mass in masses]
-
-
-def _corners(problem: Problem[Any]) -> list[Array]:
-    """Return the corners of each block, (k, axes)."""
-    blocks = problem.assembly.blocks
-    if problem.in_space:
-        return [np.concatenate([hull.corners for hull in block.hulls]) for block in blocks]
-    outlines, pieces = (column(blocks, name) for name in ("vertices", "parts"))
-    return [np.concatenate(parts) if parts else outline
-            for outline, parts in zip(outlines, pieces, strict=True)]  # fmt: skip

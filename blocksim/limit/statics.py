@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, overload
 
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.limit.capacity import Collapse
 from blocksim.limit.capacity import collapse as collapse_in_plane
 from blocksim.limit.crushing import strength_needed
 from blocksim.limit.programme import equilibrium as equilibrium_in_plane
 
 if TYPE_CHECKING:
-    from blocksim.limit.capacity import Collapse
     from blocksim.limit.programme import Equilibrium
-    from blocksim.limit.space import SpatialCollapse, SpatialEquilibrium
+    from blocksim.limit.space import SpatialEquilibrium
 
 
 @overload
@@ -58,13 +58,7 @@ def equilibrium(
     return can_rest(problem, reduce=reduce)
 
 
-@overload
-def collapse(problem: Problem, *, reduce: bool = ...) -> Collapse: ...
-@overload
-def collapse(problem: Problem[SpatialAssembly], *, reduce: bool = ...) -> SpatialCollapse: ...
-@overload
-def collapse(problem: Problem[Any], *, reduce: bool = ...) -> Collapse | SpatialCollapse: ...
-def collapse(problem: Problem[Any], *, reduce: bool = True) -> Collapse | SpatialCollapse:
+def collapse(problem: Problem[Any], *, reduce: bool = True) -> Collapse:
     """Find the largest factor on the live loads at which forces of equilibrium exist.
 
     The problem's own load factor does not matter. Below 0 it falls, or crushes, without them.
@@ -78,8 +72,8 @@ def collapse(problem: Problem[Any], *, reduce: bool = True) -> Collapse | Spatia
 
     Returns
     -------
-    Collapse or SpatialCollapse
-        See `blocksim.limit.capacity.collapse` and `blocksim.limit.space.largest_load`.
+    Collapse
+        See `blocksim.limit.capacity`.
 
     Examples
     --------

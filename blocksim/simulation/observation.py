@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any, Generic, cast
 
-import numpy as np
-
 from blocksim.blocks.assembly import Array, Blocks
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
@@ -37,14 +35,6 @@ class Held(Generic[Blocks]):
     def blocks(self) -> int:
         """How many blocks the engine was given."""
         return self.simulation.blocks
-
-    @property
-    def built(self) -> Array:
-        """Poses where the blocks were built."""
-        built = np.zeros_like(self.onset.mechanism)
-        assembly = self.simulation.assembly
-        built[:, : assembly.dimensions] = assembly.centres / assembly.size
-        return built
 
     def release(
         self, until: float | None = None, progress: Progress = silent
@@ -187,7 +177,7 @@ def conclude(held: Held[Any], *, moving: bool, progress: Progress = silent) -> O
     in_motion = joints if motion else ()
     rates = None
     if verdict is Verdict.COLLAPSES:
-        rates = first.mechanism - held.built
+        rates = first.mechanism - simulation.assembly.built[:-1]
         if not in_space:
             joints = classify(simulation.assembly, first.mechanism)
             in_motion = classify(simulation.assembly, motion.mechanism) if motion else ()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from blocksim.blocks.acting import Load
-from blocksim.blocks.assembly import SPATIAL, Array, frozen
+from blocksim.blocks.assembly import SPATIAL, Array, Bodies, frozen
 from blocksim.blocks.space.polyhedron import Polyhedron
 
 Flags = NDArray[np.bool_]
@@ -106,7 +105,7 @@ class FaceJoint:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SpatialAssembly:
+class SpatialAssembly(Bodies):
     """Blocks, supports and the joints between them.
 
     Parameters
@@ -130,18 +129,6 @@ class SpatialAssembly:
         """Half the longest side of the box around all blocks that move [m]."""
         boxes = np.array([hull.box for block in self.blocks for hull in block.hulls])
         return float((boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)).max()) / 2
-
-    @cached_property
-    def friction(self) -> Array:
-        """Friction coefficient of each joint, (joints,); nan where it has none of its own."""
-        own = (each.friction for each in self.joints)
-        return frozen([math.nan if mu is None else mu for mu in own], (-1,))
-
-    @cached_property
-    def sides(self) -> NDArray[np.int64]:
-        """Blocks before and after each joint, shape (2, joints)."""
-        sides = [(each.before, each.after) for each in self.joints]
-        return np.array(sides, dtype=np.int64).reshape(-1, 2).T
 
     @cached_property
     def points(self) -> Array:
@@ -196,32 +183,7 @@ class SpatialAssembly:
             arm = np.zeros(3) if load.point is None else load.point - own.centre
             yield index, load.force * (own.weight if load.per_weight else 1.0), arm
 
-    @cached_property
-    def reach(self) -> Array:
-        """How far corners are from the centre of their block [m], (blocks,)."""
-        corners = [np.concatenate([h.corners for h in block.hulls]) for block in self.blocks]
-        ways = zip(corners, self.blocks, strict=True)
-        found = [np.linalg.norm(own - block.centre, axis=1).max() for own, block in ways]
-        return frozen(found, (-1,))
-
-    @cached_property
-    def centres(self) -> Array:
-        """Centres of mass [m], (blocks, 3)."""
-        return frozen([block.centre for block in self.blocks], (-1, 3))
-
-    def displacement(self, moved: Array) -> Array:
-        """Bound of the displacement of any corner, from those of the centres.
-
-        Parameters
-        ----------
-        moved : (..., blocks, 6) float
-            Displacements x, y, z of the centres, in units of the size, and rotation vectors.
-
-        Returns
-        -------
-        (...) float
-            Largest over the blocks of the translation or a corner's way by rotation.
-        """
-        shift = np.linalg.norm(moved[..., :3], axis=-1)
-        turn = np.linalg.norm(moved[..., 3:], axis=-1) * self.reach / self.size
-        return np.maximum(shift, turn).max(axis=-1)
+    @property
+    def corners(self) -> tuple[Array, ...]:
+        """Corners of the parts of each block, (k, 3) [m]."""
+        return tuple(np.concatenate([h.corners for h in block.hulls]) for block in self.blocks)

@@ -98,8 +98,7 @@ class JointPoints:
     def rows(self) -> Array:
         """Scale of each equation, (6 blocks,): a block's weight, and that times its size."""
         assembly = self.problem.assembly
-        boxes = [[hull.box for hull in block.hulls] for block in assembly.blocks]
-        own = [np.ptp(np.concatenate(each), axis=0).max() / 2 for each in boxes]
+        own = [np.ptp(each, axis=0).max() / 2 for each in assembly.corners]
         arms = np.array(own) / assembly.size
         scale = np.stack([np.ones(len(arms))] * 3 + [arms] * 3, axis=1)
         return (scale * (assembly.weights / self.unit)[:, None]).ravel()

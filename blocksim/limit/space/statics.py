@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import chain
 from typing import Any
@@ -16,6 +16,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, ObservedJoint
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.limit.capacity import Collapse
 from blocksim.limit.exact import Exact
 from blocksim.limit.proof import Proof
 from blocksim.limit.resultants import Resultants
@@ -157,20 +158,6 @@ class SpatialEquilibrium:
         return unit_rates(self._contacts.problem, self._held[0]) if falls else None
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class SpatialCollapse:
-    """The largest factor on live loads at which forces of equilibrium exist.
-
-    `load_factor`: inf where no load is too much, None where there is no equilibrium at any.
-    `gap`: By how much, of the factor, forces and mechanism disagree.
-    `mechanism`, (blocks, 6).
-    """
-
-    load_factor: float | None
-    gap: float
-    mechanism: Array | None = None
-
-
 def can_rest(problem: Problem[SpatialAssembly], *, reduce: bool = True) -> SpatialEquilibrium:
     """Do in space what `limit.equilibrium` does."""
     pull = problem.applied_forces().ravel()
@@ -178,7 +165,7 @@ def can_rest(problem: Problem[SpatialAssembly], *, reduce: bool = True) -> Spati
     return SpatialEquilibrium(contacts, contacts.most(pull))
 
 
-def largest_load(problem: Problem[SpatialAssembly], *, reduce: bool = True) -> SpatialCollapse:
+def largest_load(problem: Problem[SpatialAssembly], *, reduce: bool = True) -> Collapse:
     """Do in space what `limit.collapse` does."""
     pull, live = problem.with_load(0.0).applied_forces().ravel(), problem.live_forces.ravel()
     contacts = Contacts(problem, (pull, live) if reduce else ())
@@ -187,14 +174,14 @@ def largest_load(problem: Problem[SpatialAssembly], *, reduce: bool = True) -> S
     found = contacts.most(pull, live / unit)
     if math.isinf(found.value):
         boundless = found.value > 0 and _balances(contacts, pull, live / unit)
-        return SpatialCollapse(load_factor=math.inf if boundless else None, gap=0.0)
+        return Collapse(load_factor=math.inf if boundless else None, gap=0.0)
     value = 0.0 if abs(found.value) <= BALANCED else found.value
     work = float(found.rates @ live) / unit
     bound = -float(found.rates @ pull) / work if work > 0 else math.inf
     gap = abs(bound - found.value) / max(abs(found.value), 1e-300)
     if gap > AGREED and contacts.symmetry.halves:
         return largest_load(problem, reduce=False)
-    return SpatialCollapse(
+    return Collapse(
         load_factor=value / unit, gap=gap, mechanism=unit_rates(problem, found.rates)
     )
 
@@ -260,9 +247,8 @@ def unit_rates(problem: Problem[SpatialAssembly], rates: Array) -> Array:
     """Scale rates so that the largest way of a corner is 1 [size], (blocks, 6)."""
     assembly, each = problem.assembly, rates.reshape(-1, 6)
     largest = 0.0
-    for block, rate in zip(assembly.blocks, each, strict=True):
-        arms = np.concatenate([hull.corners for hull in block.hulls]) - block.centre
-        ways = rate[:3] + np.cross(rate[3:], arms / assembly.size)
+    for corners, centre, rate in zip(assembly.corners, assembly.centres, each, strict=True):
+        ways = rate[:3] + np.cross(rate[3:], (corners - centre) / assembly.size)
         largest = max(largest, float(np.linalg.norm(ways, axis=1).max()))
     return each / largest if largest > 0 else each
 
