@@ -14,7 +14,7 @@ import pytest
 from arches import arch_at, bracket_at, problem_at
 from worlds import ContactProblem, Quality, Settings, Simulation, hold, observe
 
-from blocksim import CircularArch, Problem, Verdict, check, simulate
+from blocksim import CircularArch, Problem, Verdict, Wall, bracket, check, simulate
 from blocksim.engines.contact import Solution
 from blocksim.simulation.motion import EARLY, FINER, MOVED, QUIET, moving_run
 
@@ -263,3 +263,27 @@ def test_settings_beyond_those_measured_are_named(
     seen = check(problem, method="pymunk", reduce=False, settings=chosen)
     assert ("to be sure" in seen.reason) == (word != "")
     assert word in seen.reason
+
+
+@pytest.mark.parametrize(
+    "wall",
+    [
+        Wall(length=13.576, courses=5, block_length=1.9394, block_height=1.5415),
+        Wall(length=2.2006, courses=5, block_length=0.4396, block_height=0.3501),
+        Wall(length=23.6849, courses=3, block_length=7.8949, block_height=2.3829),
+    ],
+)
+@pytest.mark.parametrize("friction", [0.3538, 0.6375])
+def test_a_wall_that_ends_in_slabs_of_a_millimetre_can_rest(
+    wall: Wall, friction: float
+) -> None:
+    """So light a slab accelerates by less than half of a solution's digits tell apart."""
+    rough = replace(wall, friction=friction)
+    limit = bracket(rough, over="tilt", tol=1e-9).limit
+    assert limit is not None
+    for share in (0.9, 0.99, 0.999, 0.9999, 1.0001, 1.01):
+        tilted = rough.problem().tilted(math.radians(share * limit))
+        right = Verdict.STANDS if share < 1 else Verdict.COLLAPSES
+        assert [check(tilted, method=each).verdict for each in ("limit", "direct")] == [
+            right
+        ] * 2

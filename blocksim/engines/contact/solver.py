@@ -181,7 +181,8 @@ class ContactProblem:
         """Give what contacts may do after the last step, the likeliest and cheapest first."""
         x = (start.acceleration * self.root).ravel()
         guess = Answer(x=x, forces=start.forces, contacts=start.contacts)
-        yield _at_rest(step, guess)
+        if step.friction.some_steep:
+            yield _at_rest(step, guess)
         yield guess
         yield path_from_guess(step, guess, LAST_PIECES)
         for tame in _tamed(step):
@@ -196,12 +197,14 @@ class ContactProblem:
         cones = Cones.of(step)
         x, pressed, systems = central_path(step, cones, dilates=True)
         first, steep = cones.answer(step, x, pressed, systems), step.friction.some_steep
+        tried.may_rest = float(np.abs(x).max()) < NEAR_REST
         if not steep:
             yield first
-        if steep or float(np.abs(x).max()) < NEAR_REST:
+        if steep or tried.may_rest:
             x, pressed, systems = augmented_lagrangian(step, cones, x, pressed)
             answer = cones.answer(step, x, pressed, systems)
             yield _at_rest(step, answer)
+            tried.may_rest = False
             if steep:
                 yield first
             yield answer
@@ -226,11 +229,13 @@ class _Tried:
 
     `precision`: Yield of contacts at which it counts as solved [g].
     `moves`: Whether the last step is known.
+    `may_rest`: Whether a motion is no solution yet, as rest has to be looked for first.
     """
 
     def __init__(self, step: Step, precision: float, *, moves: bool) -> None:
         self._step, self._precision, self._moves = step, precision, moves
         self._answers: list[Answer] = []
+        self.may_rest = False
         self.systems = 0
 
     def settle(self, guess: Answer) -> bool:
@@ -268,19 +273,17 @@ class _Tried:
         """Return how wrong an answer is: at rest what contacts do has to be told, too."""
         return not (answer.is_settled or self._moves), answer.residual
 
-    @staticmethod
-    def _is_solution(answer: Answer) -> bool:
-        return answer.is_settled and answer.residual <= SOLVED
+    def _is_solution(self, answer: Answer) -> bool:
+        moves = self.may_rest and float(np.abs(answer.x).max()) > AT_REST
+        return answer.is_settled and answer.residual <= SOLVED and not moves
 
 
 def _at_rest(step: Step, guess: Answer) -> Answer | None:
-    """Return a guess as the solution if it is rest, with steep friction.
+    """Return a guess as the solution if it is rest.
 
-    At rest Coulomb's friction asks for no more than forces within their cones. Steep friction
-    does not tell what contacts do: near such forces there may be a motion, and nothing else.
+    At rest Coulomb's friction asks for no more than forces within their cones. What contacts
+    do is not asked: near such forces there may be a motion, and nothing else.
     """
-    if not step.friction.some_steep:
-        return None
     residual = step.residual(guess.x, guess.forces)
     rests = max(residual, float(np.abs(guess.x).max())) <= AT_REST
     return replace(guess, residual=residual, is_settled=True) if rests else None
