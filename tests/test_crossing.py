@@ -43,6 +43,30 @@ def test_the_bogie_that_was_worked_out_by_hand() -> None:
     assert min(beside) == pytest.approx(found["high"], rel=1e-7)
 
 
+def test_which_axle_stands_where() -> None:
+    """Places are those of the axles as they were given, whichever way the vehicle goes."""
+    given = "4@0,25@1.3,9@3.1"
+    found, weights = asked(EIGHT, given), (4, 25, 9)
+    ways = {each["heading"]: each for each in found["places"] if float(each["load_factor"]) < 1e3}
+    assert set(ways) == {"left", "right"}
+    for place in ways.values():
+        axles = np.array(place["axles_m"])
+        beside = min(at(EIGHT, axles + shift, weights) for shift in (-NEAR, NEAR))
+        assert beside == pytest.approx(place["load_factor"], rel=1e-6)
+    said = inside("bracket", *EIGHT.options(), "--vehicle", given).stdout.split()
+    wheel = said.index("25")
+    assert float(said[wheel + 3]) == pytest.approx(found["worst"]["axles_m"][1], abs=1e-5)
+
+
+def test_strength_without_bound_on_friction() -> None:
+    """A wheel that has hardly come is small beside what crushes; no joint slides at mu 2."""
+    arch = ("--span", "4", "--rise", "1.5", "--thickness", "0.45", "--voussoirs", "9")
+    fill = ("--unit-weight", "22", "--fill", "0.5", "--dispersal", "boussinesq")
+    crushes = (*arch, *fill, "--strength", "10", "--vehicle", "147@0")
+    at_will, rough = (answered("bracket", *crushes, "--mu", mu)["high"] for mu in ("inf", "2"))
+    assert at_will == pytest.approx(rough, rel=1e-6)
+
+
 def scan(bridge: Bridge, offsets: Any, weights: Any, places: int) -> float:
     """The least load factor of so many places, evenly and beside every joint, by scipy."""
     tops = bridge.high[:, 0]

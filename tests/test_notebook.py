@@ -116,7 +116,7 @@ def test_ipython_shows_words_and_a_drawing(
         ("arch", ["alpha 90 deg, eta 0.12, 27 voussoirs", "span 1.88 r, rise 0.94 r"]),
         ("problem", ["&lt;script&gt;x&lt;/script&gt;", "2 blocks, 2 joints, mu 0.6"]),
         ("maker", ["Circular arch", "15 blocks, 16 joints, mu 0.6"]),
-        ("crossing", ["LOAD FACTOR: least", "axles at -1.17"]),
+        ("crossing", ["LOAD FACTOR: least", " kN at -1.17"]),
         ("cases", ["STANDS", "governed by alone"]),
         ("arch check", ["COLLAPSES", "rrr, purely rotational", "friction angle 34.992 deg"]),
         ("check", ["COLLAPSES", "factor at collapse 0.4", "&lt;script&gt;"]),

@@ -40,7 +40,7 @@ class Place:
 
     `position`: Of the vehicle's origin [m].
     `heading`, {"right", "left"}: Left where the vehicle is turned round.
-    `axles`: Where they stand [m].
+    `axles`: Where they stand, in the order of the vehicle's [m].
     `live`, (blocks, 3): What the vehicle does to the blocks [mean weight, and that times the
         size]. At a joint it is what it does just beside it, on the side that is worse.
     `load_factor`: inf where nothing of it is on the structure.

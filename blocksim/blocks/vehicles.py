@@ -34,14 +34,13 @@ class Vehicle:
 
     @property
     def turned(self) -> Vehicle:
-        """The same going the other way."""
-        axles = tuple((-place, weight) for place, weight in self.axles)
-        return replace(self, axles=tuple(sorted(axles)))
+        """The same going the other way; its axles are named in the same order."""
+        return replace(self, axles=tuple((-place, weight) for place, weight in self.axles))
 
     @property
     def is_alike(self) -> bool:
         """Whether it makes no difference which way it goes."""
-        ahead, behind = sorted(self.axles), self.turned.axles
+        ahead, behind = sorted(self.axles), sorted(self.turned.axles)
         shift = ahead[0][0] - behind[0][0]
         return all(
             math.isclose(one, other + shift, abs_tol=1e-9) and math.isclose(mine, others)

@@ -8,7 +8,7 @@ of the second order, also where the strength is sought, in proportion to which P
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -88,7 +88,11 @@ class Crushing:
         Raises `Unsolved`: If the solver gives up.
         """
         cost = np.append(np.zeros(self._cones.count), -1.0)
-        return self._solve(cost, column, right, self._soil)
+        # The solver's tolerances are of numbers near 1: a wheel that has hardly come is small.
+        size = float(np.abs(right).sum() / np.abs(column).sum())
+        found, shares = self._solve(cost, column * size, right, self._soil)
+        values = np.append(found.values[:-1], found.values[-1:] * size)
+        return replace(found, values=values), shares
 
     def extreme(self, cost: Array, right: Array) -> Optimum:
         """Find forces of equilibrium within the strength, at the least cost."""

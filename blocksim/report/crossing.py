@@ -8,21 +8,25 @@ from typing import TYPE_CHECKING, BinaryIO
 from blocksim.blocks.joints import joint_names
 from blocksim.common.sheets import write_sheet
 from blocksim.common.version import __version__
+from blocksim.common.words import few
 from blocksim.limit.margins import crown
 from blocksim.report.problems import described, problem_record, size_lines
 
 if TYPE_CHECKING:
     from blocksim.ask.crossing import Crossing
     from blocksim.ask.worst import Place
+    from blocksim.blocks.vehicles import Vehicle
     from blocksim.report.schema import CrossingRecord, PlaceRecord
+
+SHOWN = 4
+"""Axles whose places are said."""
 
 
 def crossing_lines(answer: Crossing) -> list[str]:
     """Return what a vehicle comes to, in words."""
     problem, worst, vehicle = answer.problem, answer.worst, answer.vehicle
-    axles = ", ".join(f"{x:.6g}" for x in worst.axles)
     turned = ", heading left" if worst.heading == "left" else ""
-    said = f"least {answer.load_factor:.9g}, with axles at {axles} m{turned}"
+    said = f"least {answer.load_factor:.9g}, with {_axles(worst, vehicle)}{turned}"
     if math.isinf(answer.load_factor):
         said = "inf: nothing that the vehicle weighs is too much"
     lines = [
@@ -45,13 +49,17 @@ def crossing_lines(answer: Crossing) -> list[str]:
         where = joint_names(problem.assembly)[joint]
         lines.append(
             f"  thrust  at {where}, of all places asked: least {least[0] / 1e3:.6g} kN "
-            f"({_at(least[2])}), greatest {most[1] / 1e3:.6g} kN ({_at(most[2])})"
+            f"({_axles(least[2], vehicle)}), greatest {most[1] / 1e3:.6g} kN "
+            f"({_axles(most[2], vehicle)})"
         )
     return lines
 
 
-def _at(place: Place) -> str:
-    return "axles at " + ", ".join(f"{x:.4g}" for x in place.axles) + " m"
+def _axles(place: Place, vehicle: Vehicle) -> str:
+    """Say where each axle stands."""
+    at = zip(place.axles, vehicle.axles, strict=True)
+    told = [f"{weight / 1e3:.4g} kN at {x:.6g} m" for x, (_, weight) in at]
+    return few(told, SHOWN)
 
 
 def crossing_record(answer: Crossing) -> CrossingRecord:
