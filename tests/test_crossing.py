@@ -47,7 +47,9 @@ def test_which_axle_stands_where() -> None:
     """Places are those of the axles as they were given, whichever way the vehicle goes."""
     given = "4@0,25@1.3,9@3.1"
     found, weights = asked(EIGHT, given), (4, 25, 9)
-    ways = {each["heading"]: each for each in found["places"] if float(each["load_factor"]) < 1e3}
+    ways = {
+        each["heading"]: each for each in found["places"] if float(each["load_factor"]) < 1e3
+    }
     assert set(ways) == {"left", "right"}
     for place in ways.values():
         axles = np.array(place["axles_m"])

@@ -125,7 +125,8 @@ def carried_by(
     """
     found = margins(problem)
     joint = crown(problem) if joint is None else joint
-    ends = None if joint is None else thrust_range(problem, joint)
+    crushes = needed is not None and needed.low > (problem.strength or math.inf)
+    ends = None if joint is None or crushes else thrust_range(problem, joint)
     least_thrust, greatest = ends or (None, None)
     mu = set(problem.friction.tolist())
     least = found.friction if len(mu) == 1 else None
