@@ -8,17 +8,28 @@ from runpy import run_path
 
 import numpy as np
 import pytest
+from running import inside
 
-from blocksim import Check, CircularArch, EllipticArch, Portal, Problem, check, load
-from blocksim.ask import family_of
+from blocksim import (
+    Check,
+    CircularArch,
+    EllipticArch,
+    Portal,
+    Problem,
+    check,
+    load,
+    load_recording,
+)
 
 DOCS = Path(__file__).parents[1] / "docs"
 
 
-def test_supports_that_have_spread_bear_the_blocks_where_they_are() -> None:
+def test_supports_that_have_spread_bear_the_blocks_where_they_are(tmp_path: Path) -> None:
     """Each springing lies on the face of its support, 1 % of the span further apart."""
-    known = load("spread_90_12_20")
-    moved = family_of(known, "spread").at(0.01)
+    name, run = "spread_90_12_20", str(tmp_path / "run.npz")
+    asked = ("simulate", name, "--spread", "0.01", "--seconds", "0.01", "--out", run)
+    assert inside(*asked).returncode == 0
+    known, moved = load(name), load_recording(run).problem
     for problem, span in ((known, 0.94), (moved, 0.95)):
         left, right = (np.concatenate(each.polygons) for each in problem.assembly.supports)
         assert right[:, 0].min() - left[:, 0].max() == pytest.approx(span, abs=1e-9)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -22,17 +23,15 @@ from blocksim import (
     Block,
     CircularArch,
     InputError,
+    Maker,
     Problem,
+    assembly_of_polygons,
     collapse,
     equilibrium,
+    load_recording,
+    simulate,
     structure_of,
 )
-from blocksim.blocks.entries import AROUND
-from blocksim.blocks.polygons import assembly_of_bodies
-from blocksim.blocks.record import from_record, to_record
-from blocksim.common.fields import fields_of
-from blocksim.kinds.archkind import ArchKind, CurvedArch
-from blocksim.kinds.loading import maker_of
 
 LOOSER = {
     "pointed": 2e-7,
@@ -44,8 +43,8 @@ LOOSER = {
 """Where the corpus summed weights step by step; rings and boxes agree to 1e-9.
 
 That ours are exact is held to closed forms below."""
-CURVED = [name for name, kind in KINDS.items() if issubclass(kind, CurvedArch)]
-ARCHES = [name for name, kind in KINDS.items() if issubclass(kind, ArchKind)]
+CURVED = [name for name, kind in KINDS.items() if hasattr(kind, "curve")]
+ARCHES = [*CURVED, "flat-arch"]
 
 
 def in_order(problem: Problem) -> list[Block]:
@@ -265,11 +264,12 @@ def test_fill_over_a_semicircle() -> None:
 @pytest.mark.parametrize("name", ARCHES)
 def test_an_arch_is_made_as_its_bodies_would_be(name: str) -> None:
     """The short way to an assembly leads where the search for faces does."""
-    made = KINDS[name]().made(2.0)
-    found, _ = assembly_of_bodies(made.bodies, density=2.0)
     mine = structure_of({"kind": name, "friction": 1.0, "density": 2.0}).assembly
-    assert mine.size == pytest.approx(found.size, rel=1e-15)
-    assert to_record(mine.blocks) == to_record(found.blocks)
+    bodies = KINDS[name]().made(2.0).bodies
+    fixed = [at for at, each in enumerate(bodies) if each.fixed]
+    found = assembly_of_polygons([each.polygons[0] for each in bodies], fixed=fixed)
+    for one, other in zip(mine.blocks, found.blocks, strict=True):
+        assert np.array_equal(one.vertices, other.vertices)
     ends = {frozenset((joint.before, joint.after)): joint for joint in found.joints}
     for joint in mine.joints[1:-1]:
         other = ends[frozenset((joint.before, joint.after))]
@@ -322,7 +322,7 @@ def test_scaled_is_the_same(
     def margin(scale: float) -> float:
         table = {"kind": name, "friction": written(mu), "voussoirs": 12, "density": scale}
         lengths = {"thickness": thick}
-        known = fields_of(KINDS[name])
+        known = {each.name for each in fields(KINDS[name])}
         lengths |= {"span": 2.0} if "span" in known else {"radius": 1.0}
         lengths |= {"rise": rise} if "rise" in known else {}
         lengths |= {"radius": 1.2} if name == "pointed-arch" else {}
@@ -373,7 +373,7 @@ def test_rubble_fills_its_wall_and_follows_its_seed() -> None:
         return structure_of({"kind": "rubble", "friction": 0.7, "seed": seed, "stones": 25})
 
     one, again, other = stones(3), stones(3), stones(4)
-    assert to_record(one) == to_record(again)
+    assert one.to_dict() == again.to_dict()
     assert one.assembly.centres[0] != pytest.approx(other.assembly.centres[0])
     for each in (one, other):
         weight = sum(block.mass for block in each.assembly.blocks) * 9.81
@@ -405,12 +405,13 @@ def test_a_segmental_portal_has_skewbacks_and_buttresses() -> None:
     assert np.ptp(top[top[:, 1] == top[:, 1].max(), 0]) == pytest.approx(0.5, rel=1e-12)
 
 
-def test_origins_are_kept_and_read_back() -> None:
-    """With them a problem from a file or a recording can be built otherwise."""
+def test_origins_are_kept_and_read_back(tmp_path: Path) -> None:
+    """With them a problem from a recording can be built otherwise."""
     portal = structure_of(
         {"kind": "portal", "friction": 0.6, "density": 2.0, "pier_width": 0.4}
     )
-    back = from_record(json.loads(json.dumps(to_record(portal))), maker_of)
+    simulate(portal, method="direct", duration=0.01).save(tmp_path / "run.npz")
+    back = load_recording(tmp_path / "run.npz").problem
     wider = back.but(pier_width=0.8)
     assert wider.maker.pier_width == 0.8  # type: ignore[union-attr]
     assert wider.assembly.blocks[0].mass == pytest.approx(2 * portal.assembly.blocks[0].mass)
@@ -419,11 +420,11 @@ def test_origins_are_kept_and_read_back() -> None:
         {"kind": "portal", "friction": 0.6, "density": 2.0, "pier_width": 0.4,
          "arch": {"kind": "circular-arch", "thickness": 0.3}}
     )  # fmt: skip
-    assert to_record(thick.assembly) == to_record(same.assembly)
+    assert thick.to_dict() == same.to_dict()
     pushed = structure_of(FACTORS["two_spans_load_b6"] | {"friction": 0.7}).with_load(0.3)
     moved = pushed.but(pier_width=0.7)
     assert moved.load == 0.3
-    assert to_record(moved.live) == to_record(pushed.live)
+    assert moved.to_dict()["live"] == pushed.to_dict()["live"]
     with pytest.raises(InputError, match="leaves 33 blocks"):
         structure_of({"kind": "wall", "friction": 1.0, "length": 1.9}).but(courses=7)
 
@@ -434,7 +435,9 @@ def test_every_kind_stands_as_it_comes(name: str) -> None:
     problem = structure_of({"kind": name, "friction": 0.7})
     assert equilibrium(problem).exists
     assert problem.title == name
-    assert not {*fields_of(KINDS[name])} & {*AROUND, "kind", "blocks"}
+    own = {each.name for each in fields(KINDS[name])} - {each.name for each in fields(Maker)}
+    said = {*problem.to_dict(), "kind", "load", "dead", "live", "move", "shake"}
+    assert own & said <= {"joints"}
     assert structure_of({**problem.maker.table(), "friction": 0.7}).maker == problem.maker
     again = structure_of(problem.to_dict())
     assert again.assembly.centres == pytest.approx(problem.assembly.centres, abs=1e-12)

@@ -19,7 +19,8 @@ EVERY = [
     "report {} --out x.html",
 ]
 OTHERS = [
-    "kinds", "kinds portal", "scenarios", "doctor", "check --help", "map --table",
+    "kinds", "kinds portal", "kinds wall", "kinds arcade", "scenarios", "doctor",
+    "check --help", "map --table",
     "check wall --mu 0.5 --push 0.1", "check column --mu 0.7 --with drums=2 --must-rest",
     "bracket ferris_tinloi_3 --over load", "bracket portal --mu 0.7 --over lean",
     "check --span 8 --rise 3 --thickness 0.45 --voussoirs 31 --mu 0.7 --unit-weight 22 "
@@ -41,6 +42,7 @@ def test_no_line_of_a_command_is_too_long(asked: str, tmp_path: Path) -> None:
     lines = told(asked, tmp_path).splitlines()
     assert lines
     assert max(map(len, lines)) <= WIDEST
+    assert all(line == line.rstrip() for line in lines)
 
 
 @pytest.mark.long

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
@@ -96,6 +97,23 @@ def nearest(colours: list[str], seen: str) -> tuple[float, str, str]:
     apart = difference(found[one], found[two])
     least = int(apart.argmin())
     return float(apart[least]), colours[one[least]], colours[two[least]]
+
+
+def shown(page: Any, tone: str) -> list[int]:
+    """Red, green and blue of any colour that a style sheet may have, as a browser paints it."""
+    return page.evaluate(
+        """(colour) => {
+          const pad = document.createElement("canvas").getContext("2d");
+          pad.fillStyle = colour;
+          pad.fillRect(0, 0, 1, 1);
+          return [...pad.getImageData(0, 0, 1, 1).data].slice(0, 3); }""",
+        tone,
+    )
+
+
+def shown_contrast(page: Any, ink: str, ground: str) -> float:
+    """Contrast of two colours of a page."""
+    return contrast(*("#" + bytes(shown(page, tone)).hex() for tone in (ink, ground)))
 
 
 def contrast(one: str, two: str) -> float:
