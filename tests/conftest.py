@@ -17,7 +17,6 @@ from sweeps import SIMULATED, Rows, rows_of, swept
 from windows import PATIENCE, Windows
 
 from blocksim import MissingPart
-from blocksim.sweeps import run
 
 # Compiled once, not in every run and by every process that tests start.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -72,9 +71,8 @@ def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Rows:
 @pytest.fixture
 def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """Sweep without other processes: they take seconds to start, and have their own tests."""
-    hands = run.Hands
     monkeypatch.setattr(
-        run, "Hands", lambda workers, given: hands(workers, given or ThreadPoolExecutor(1))
+        "blocksim.common.processes.ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1)
     )
 
 

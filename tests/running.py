@@ -14,7 +14,10 @@ from pathlib import Path
 from typing import Any
 from unittest import mock
 
+import click
+
 from blocksim import MissingPart, cli
+from blocksim.cli.app import COMMANDS as COMMANDS
 
 PROGRAM = (sys.executable, "-m", "blocksim")
 ENGINES = ("direct", "pymunk", "pybullet", "mujoco")
@@ -55,6 +58,12 @@ def inside(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProc
     if absent and part.removeprefix("blocksim: ") in ENGINES:
         raise MissingPart(part.removeprefix("blocksim: "), remedy)
     return subprocess.CompletedProcess(arguments, code, out.getvalue(), complaints.getvalue())
+
+
+def parameters(command: str) -> list[click.Parameter]:
+    """Return what a command takes, as click has it."""
+    found = cli.app.get_command(click.Context(cli.app), command)
+    return [] if found is None else found.params
 
 
 def answered(*arguments: str, code: int | None = 0, cwd: Path | None = None) -> dict[str, Any]:

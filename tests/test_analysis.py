@@ -57,22 +57,25 @@ def test_pictures_of_pages_are_drawn_again_by_one_command(tmp_path: Path) -> Non
     assert words[0] == words[1]
 
 
-@pytest.mark.parametrize("end", ["", "/", "//"])
-def test_a_study_takes_a_folder_with_a_slash(
-    end: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        *((f"rows{end} --quick", "rows True None") for end in ("", "/", "//")),
+        ("rows --engines direct --engines pymunk", "rows False ['direct', 'pymunk']"),
+    ],
+)
+def test_what_a_study_takes_are_its_options(
+    given: str, said: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def main(out: Path, *, quick: bool = False) -> str:
+    def main(out: Path, *, quick: bool = False, engines: list[str] | None = None) -> list:
         """Tell what was asked."""
-        return f"{out} {quick}"
+        return [out, quick, engines]
 
-    monkeypatch.setattr("sys.argv", ["study", f"{tmp_path}/rows{end}", "--quick"])
+    monkeypatch.setattr("sys.argv", ["study", *given.split()])
     with pytest.raises(SystemExit) as ended:
-        study("command").run(main)
+        study("command").run(main, lambda told: " ".join(map(str, told)))
     assert ended.value.code == 0
-    assert capsys.readouterr().out == f"{tmp_path}/rows True\n"
+    assert capsys.readouterr().out == f"{said}\n"
 
 
 @pytest.mark.long
@@ -180,20 +183,6 @@ def test_arches_on_spreading_supports(tmp_path: Path) -> None:
 def test_every_study_is_listed_with_its_claim() -> None:
     listed = (STUDIES / "README.md").read_text(encoding="utf-8")
     assert [path.name for path in STUDIES.glob("*.py") if path.name not in listed] == []
-
-
-def test_what_a_study_takes_are_its_options(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def main(out: Path, *, quick: bool = False, engines: list[str] | None = None) -> Counter:
-        return Counter({out: quick, **dict.fromkeys(engines or (), 2)})
-
-    given = "study folder --quick --engines direct --engines pymunk"
-    monkeypatch.setattr("sys.argv", given.split())
-    with pytest.raises(SystemExit) as ended:
-        study("command").run(main, lambda counts: counts.total())
-    assert ended.value.code == 0
-    assert capsys.readouterr().out == "5\n"
 
 
 @pytest.mark.long

@@ -8,11 +8,9 @@ from pathlib import Path
 
 import click
 import pytest
-from running import PROGRAM, answered, inside
+from running import COMMANDS, PROGRAM, answered, inside, parameters
 
 from blocksim import load_recording
-from blocksim.cli import main
-from blocksim.cli.app import COMMANDS, app
 
 ARCH = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "27")
 
@@ -56,8 +54,7 @@ REPEATED = {
 
 def test_an_option_given_twice_is_taken_twice_or_refused() -> None:
     for name in COMMANDS:
-        command = app.get_command(click.Context(app), name)
-        for option in command.params:
+        for option in parameters(name):
             if not isinstance(option, click.Option):
                 continue
             ways = [*option.opts, *option.secondary_opts]
@@ -108,21 +105,6 @@ def test_a_full_disk_is_no_verdict() -> None:
         # What is full for verdicts is in test_long_use.
         done = subprocess.run([*PROGRAM, "check", "nothing"], stderr=full, check=False)
         assert done.returncode == 2
-
-
-def test_a_crash_is_no_verdict(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def crash(**_: object) -> None:
-        message = "cannot happen"
-        raise ZeroDivisionError(message)
-
-    monkeypatch.setattr("blocksim.cli.run", crash)
-    monkeypatch.setattr("blocksim.cli.interrupts.install", lambda: None)
-    with pytest.raises(SystemExit) as end:
-        main()
-    assert end.value.code == 70
-    assert "ZeroDivisionError: cannot happen" in capsys.readouterr().err
 
 
 def test_simulate_writes_a_recording_of_the_time_asked_for(tmp_path: Path) -> None:

@@ -18,11 +18,9 @@ from types import ModuleType
 import matplotlib.image
 import numpy as np
 import pytest
-from click import Context
-from running import ENGINES, inside
+from running import COMMANDS, ENGINES, inside, parameters
 
 from blocksim import __version__, cite
-from blocksim.cli.app import COMMANDS, app
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -221,10 +219,9 @@ def known(code: str) -> bool:
     asked = re.match(rf"(?:\$ )?(?:\.venv/bin/)?blocksim ({two}|[a-z]\S*)(.*)", code)
     if not asked:
         return True
-    command = app.get_command(Context(app), asked[1]) if asked[1] in COMMANDS else None
-    if command is None:
+    if asked[1] not in COMMANDS:
         return False
-    options = {name for each in command.params for name in each.opts}
+    options = {name for each in parameters(asked[1]) for name in each.opts}
     return {*re.findall(r"(?<=\s)--[a-z-]+", asked[2])} <= options
 
 

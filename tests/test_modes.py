@@ -7,13 +7,12 @@ import math
 import numpy as np
 import pytest
 from arches import arch_at, least
-from click.testing import CliRunner
+from running import inside
 from worlds import observe, observed_mode
 
 from blocksim import Arch, CircularArch, JointState, Mode, bracket, check
 from blocksim.arch.limit import least_thickness
 from blocksim.arch.limit.mechanism import mechanism
-from blocksim.cli import app
 
 SEVEN = [
     (90, 0.7, 27, Mode.RRR),
@@ -84,13 +83,13 @@ def test_arches_below_their_limit_have_a_mode(angle: float, mu: float, ratio: fl
 @pytest.mark.usefixtures("wide_window")
 def test_words_tell_which_arch_which_thickness_and_which_mode() -> None:
     asked = ["--alpha", "90", "--mu", "0.3", "--eta", "0.1", "--voussoirs", "27"]
-    told = CliRunner().invoke(app, ["check", *asked]).output
+    told = inside("check", *asked).stdout
     assert "  least   eta none up to 2 (ss) as built, none up to 2 (ss) continuous" in told
     assert "  mode    srr, sliding-rotational (shoulder slides), " in told
     assert "of the voussoirs as built, at eta 0.1\n" in told
-    told = CliRunner().invoke(app, ["check", *asked, "--method", "theory"]).output
+    told = inside("check", *asked, "--method", "theory").stdout
     assert "  mode    ss, purely sliding, of the continuous arch, of any thickness\n" in told
-    told = CliRunner().invoke(app, ["bracket", *asked[:4], *asked[6:]]).output
+    told = inside("bracket", *asked[:4], *asked[6:]).stdout
     assert "  mode    ss, purely sliding, of the voussoirs as built, at eta 2\n" in told
 
 

@@ -8,10 +8,7 @@ import subprocess
 import sys
 
 import pytest
-from click.testing import CliRunner
-
-from blocksim.cli import app
-from blocksim.cli.app import COMMANDS
+from running import COMMANDS, inside
 
 SLOW = {
     "PIL", "av", "distributed", "ezdxf", "filelock", "highspy", "jinja2", "matplotlib",
@@ -68,8 +65,8 @@ def test_a_shell_completes_commands_and_options() -> None:
 
 
 def test_help_lists_every_command_with_the_first_line_of_its_own_help() -> None:
-    told = " ".join(CliRunner().invoke(app, ["--help"]).output.split())
+    told = " ".join(inside("--help").stdout.split())
     for name in COMMANDS:
-        own = CliRunner().invoke(app, [name, "--help"]).output
+        own = inside(*name.split(), "--help").stdout
         about = " ".join(own.split("\n\n")[1].split())
         assert f" {name} {about}" in told

@@ -95,29 +95,20 @@ def test_statics_by_hand_of_half_an_arch_agrees(asked: Question) -> None:
     assert by_half(drawn_flat(scene) if spatial(asked) else scene) == asked.stands
 
 
-def in_space(group: str | None, level: float) -> list[Question]:
-    return [
-        each
-        for each in STANDING.values()
-        if spatial(each) and each.level == level and group in {None, each.group}
-    ]
+IN_SPACE = [each for each in STANDING.values() if spatial(each) and each.level == 1]
 
 
-def agree_in_space(asked: Question) -> None:
+@pytest.mark.parametrize(
+    "asked",
+    [
+        pytest.param(each, id=each.name, marks=[pytest.mark.long] * (each.group != "towers"))
+        for each in IN_SPACE
+    ],
+)
+def test_a_programme_of_its_own_agrees_in_space(asked: Question) -> None:
     # What stands does so with pyramids within the cones, what falls with those around them.
     grown = 1.0 if asked.stands else 1 / math.cos(math.pi / SIDES)
     assert by_pyramids(asked.scene.record(), grown) == asked.stands
-
-
-@by_name(in_space("towers", 1.0))
-def test_a_programme_of_its_own_agrees_on_towers(asked: Question) -> None:
-    agree_in_space(asked)
-
-
-@pytest.mark.long
-@by_name([each for each in in_space(None, 1.0) if each.group != "towers"])
-def test_a_programme_of_its_own_agrees_in_space(asked: Question) -> None:
-    agree_in_space(asked)
 
 
 @by_name(

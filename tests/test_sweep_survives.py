@@ -13,10 +13,7 @@ from pathlib import Path
 
 import pytest
 from running import alive, blocksim, children, inside, small_files, started, until
-from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, swept, written
-
-from blocksim import InputError
-from blocksim.sweeps.shards import LOCK, locked
+from sweeps import SIMULATED, Rows, design_of, rows_of, swept, written
 
 FOR_MINUTES = SIMULATED.replace("count = 20", "count = 4000")
 
@@ -38,33 +35,17 @@ def test_a_write_that_was_interrupted_loses_nothing(
 
 
 def test_a_folder_is_for_one_sweep_at_a_time(tmp_path: Path) -> None:
-    asked, out = written(tmp_path, GRID), tmp_path / "out"
-    out.mkdir()
-    part = out / ".rows-x.jsonl.part"
-    part.write_text("what the other is writing")
-    with locked(out):
+    asked, out = written(tmp_path, FOR_MINUTES), tmp_path / "out"
+    with started(*asked, "--workers", "1") as driver:
+        until(lambda: shards(out) > 0, driver)
+        part = out / ".rows-x.jsonl.part"
+        part.write_text("what the other is writing")
         done = inside(*asked, "--workers", "1")
+        driver.kill()
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("\n") == 1
     assert f"--out = '{out}': must be a folder no other sweep is at work in" in done.stderr
     assert part.exists()
-    assert not list(out.glob("rows-*"))
-
-
-def test_a_lock_left_by_a_killed_sweep_holds_nobody_up(tmp_path: Path) -> None:
-    holder = [
-        "from blocksim.sweeps.shards import locked",
-        "from pathlib import Path",
-        f"with locked(Path({str(tmp_path)!r})): print('held', flush=True); input()",
-    ]
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-    with subprocess.Popen([sys.executable, "-c", "\n".join(holder)], **pipes) as process:
-        assert process.stdout.readline() == b"held\n"
-        with pytest.raises(InputError, match="no other sweep"), locked(tmp_path):
-            pass
-        process.kill()
-    with locked(tmp_path):
-        assert (tmp_path / LOCK).exists()
 
 
 @pytest.mark.usefixtures("in_this_process")

@@ -18,7 +18,6 @@ from hypothesis import strategies as st
 from blocksim import InputError, Mode
 from blocksim.arch import limit, theory
 from blocksim.arch.theory import (
-    landmarks,
     least_thickness,
     least_thicknesses,
     regions,
@@ -182,12 +181,6 @@ def test_wrong_input_is_named(field: str, values: tuple) -> None:
         least_thicknesses(*values)
 
 
-def test_shapes() -> None:
-    assert least_thicknesses(np.empty((0, 3)), 1.0).eta.shape == (0, 3)
-    assert least_thicknesses(1.0, 1.0).eta.shape == ()
-    assert least_thicknesses(1.0, 1.0).mode == "rrr"
-
-
 @pytest.mark.parametrize("weight", ["centreline", "sector"])
 def test_the_rotational_mode_that_is_read_is_the_one_that_is_solved(weight: str) -> None:
     stored, solved = rotation._rotational(weight), rotation.solved(weight)
@@ -212,15 +205,6 @@ def test_the_rotational_mode_ends_in_r(weight: str) -> None:
     beside = special_angles(weight).zero_thrust + np.array([-1e-9, 0, 1e-9])
     names = [least_thicknesses(angle, math.inf, weight).names for angle in beside]
     assert names == [(Mode.RRR,), (Mode.R,), (Mode.R,)]
-
-
-@pytest.mark.parametrize("weight", WEIGHTS)
-def test_landmarks_belong_to_all_their_regions(weight: str) -> None:
-    around = {"T": 4, "S": 3, "J": 3, "B": 2}
-    for name, mark in landmarks(weight).items():
-        point = at_points(mark.eta, mark.mu, weight)
-        assert len(point.regions[()]) == around[name], name
-        assert float(point.half_angle) == pytest.approx(mark.half_angle, abs=1e-11)
 
 
 def test_beside_the_lines() -> None:

@@ -19,8 +19,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 import pytest
-from running import blocksim as run_it
-from running import inside, small_files
+from running import inside
 from sweeps import swept
 
 import blocksim
@@ -324,14 +323,6 @@ def test_every_step_fails_once(kind: str, writers: Writers, tmp_path: Path) -> N
 
 
 # Exit codes.
-
-
-def test_a_full_disk_has_an_exit_code_of_its_own(tmp_path: Path) -> None:
-    words = ("simulate", "semicircle", "--eta", "0.2", "--out", "a.npz")
-    done = run_it(*words, cwd=tmp_path, before=small_files(1000))
-    assert done.returncode == 74
-    assert done.stderr == "blocksim: --out = 'a.npz': the system says 'File too large'\n"
-    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("error", [PermissionError(EACCES, "Permission denied"), MemoryError()])
