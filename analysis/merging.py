@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -24,7 +23,8 @@ from analysis.command import run
 from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
 from analysis.structure_cases import COARSE, questions
-from blocksim import Load, Problem, collapse, structure_of
+from blocksim import Problem, Wall
+from blocksim.ask.families import Family, family_of
 from blocksim.simulation.merging import LEAST, Merging
 from blocksim.simulation.observation import Observation, observe
 from tests.structure_cases import names
@@ -36,32 +36,21 @@ Asked = tuple[str, str, str]
 """Name, question, and the side: inside or outside of what stands."""
 
 
-def wall(length: float, courses: int) -> tuple[Problem, float]:
-    """Make a wall that is pushed to the right, and find by how much of its weight it falls."""
-    made = structure_of(
-        {
-            "kind": "wall",
-            "friction": 0.7,
-            "length": length,
-            "courses": courses,
-            "block_length": 0.4,
-            "block_height": 0.2,
-        }
+def wall(length: float, courses: int) -> Family:
+    """Make a wall that is pushed, by shares of its weight."""
+    made = Wall(
+        friction=0.7, length=length, courses=courses, block_length=0.4, block_height=0.2
     )
-    blocks = tuple(range(len(made.assembly.blocks)))
-    pushed = replace(made, live=(Load(force=(1.0, 0.0), blocks=blocks, per_weight=True),))
-    factor = collapse(pushed).load_factor
-    assert factor is not None  # noqa: S101
-    return pushed, factor
+    return family_of(made.problem(), "push")
 
 
 def cases(*, quick: bool) -> Iterator[tuple[Asked, Problem]]:
     """Return what is asked, with the problem."""
     for length, courses in WALLS[:1] if quick else WALLS:
-        pushed, factor = wall(length, courses)
-        name = f"wall of {len(pushed.assembly.blocks)}"
+        pushed = wall(length, courses)
+        name = f"wall of {len(pushed.problem.assembly.blocks)}"
         for side, share in (("inside", 1 - COARSE), ("outside", 1 + COARSE)):
-            yield (name, "push", side), pushed.with_load(share * factor)
+            yield (name, "push", side), pushed.at(share * (pushed.exact() or 0.0))
     for name in QUICK if quick else names():
         for question in questions(name):
             for side, problem in question.sides(COARSE).items():

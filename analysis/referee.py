@@ -9,11 +9,8 @@ Levels that it was not asked about have no rows; it is then in neither scores no
 
 from __future__ import annotations
 
-import csv
-import gzip
-import io
 import json
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
@@ -22,17 +19,17 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from analysis.command import run
-from analysis.rows import provenance, write_rows
+from analysis.rows import FIGURES, provenance, read_kept, write_rows
 from blocksim.common.files import make_folder
 from blocksim.suite.answers import Head, read_answers
 from blocksim.suite.export import groups, questions
 from blocksim.suite.families import LEVELS
 from blocksim.suite.score import Row, Score, scored
 
-KEPT = Path(__file__).parent / "figures" / "referee.csv.gz"
+KEPT = FIGURES / "referee.csv.gz"
 MARKS = "osD^vPX*<>hp"
-SAME = ("engine", "engine_version", "settings", "scene")
-"""Columns in which a row is told from others."""
+WHO = {"engine": "engine", "version": "engine_version", "settings": "settings"}
+"""Columns of who says it: `version` is that of blocksim, in rows of any study."""
 NONE = 100.0
 """Where an engine is drawn that is right at no level [%]."""
 
@@ -48,10 +45,8 @@ def scores_of(folder: Path) -> list[Score]:
 
 def rows_of(score: Score) -> list[dict[str, object]]:
     """Return rows of levels that were answered, numbers as short as they are known."""
-    head = score.head
     answered = {row.level for row in score.rows if row.seconds}
-    # `version` is that of blocksim, in rows of any study.
-    said = {"engine": head.engine, "engine_version": head.version, "settings": head.settings}
+    said = {key: getattr(score.head, name) for name, key in WHO.items()}
     return [
         said | {name: _short(value) for name, value in asdict(row).items() if name != "group"}
         for row in score.rows
@@ -63,29 +58,19 @@ def _short(value: object) -> object:
     return f"{value:.3g}" if isinstance(value, float) else "" if value is None else value
 
 
-def _lines(path: Path) -> list[dict[str, Any]]:
-    with io.TextIOWrapper(gzip.open(path)) as file:
-        return list(csv.DictReader(file))
+def kept(path: Path) -> list[dict[str, Any]]:
+    """Read rows as they are kept; versions are text."""
+    return read_kept(path, *WHO.values())
 
 
 def read(path: Path) -> list[Score]:
     """Read rows."""
-    asked = questions()
-    found: dict[Head, list[Row]] = {}
-    for line in _lines(path):
-        head = Head(
-            engine=line["engine"],
-            version=line["engine_version"],
-            settings=line["settings"],
-        )
-        row: dict[str, Any] = {
-            name: float(line[name]) if line[name] else None
-            for name in ("level", "drift", "gain", "asymmetry", "error", "seconds")
-        }
-        row |= {"scene": line["scene"], "answer": line["answer"]}
-        row |= {"stands": None if not line["stands"] else line["stands"] == "True"}
-        row |= {"group": asked[line["scene"]].group}
-        found.setdefault(head, []).append(Row(**row))
+    asked, found = questions(), dict[Head, list[Row]]()
+    for line in kept(path):
+        said = {each.name: line[each.name] for each in fields(Row) if each.name in line}
+        row = Row(group=asked[line["scene"]].group, **said)
+        head = Head(**{name: line[key] for name, key in WHO.items()})
+        found.setdefault(head, []).append(row)
     return [Score(head=head, rows=tuple(rows)) for head, rows in found.items()]
 
 
@@ -142,7 +127,8 @@ def main(
     if answers is not None:
         path = out / KEPT.name
         new = [row | provenance() for score in scores_of(answers) for row in rows_of(score)]
-        lines = {tuple(row[name] for name in SAME): row for row in (*_lines(KEPT), *new)}
+        same = (*WHO.values(), "scene")
+        lines = {tuple(row[name] for name in same): row for row in (*kept(KEPT), *new)}
         write_rows(path, [*lines.values()])
     # Rounded as they are kept.
     whole = [each for each in read(path) if set(LEVELS) <= {row.level for row in each.rows}]

@@ -64,11 +64,17 @@ def write_rows(path: Path, rows: Sequence[Mapping[str, object]]) -> None:
     write_whole(path, lambda file: file.write(whole))
 
 
-def read_kept(path: Path) -> list[dict[str, Any]]:
-    """Read rows that `write_rows` wrote: numbers, truths, None where a cell is empty, text."""
+def read_kept(path: Path, *texts: str) -> list[dict[str, Any]]:
+    """Read rows that `write_rows` wrote: numbers, truths, None where a cell is empty, text.
+
+    `texts`: Columns that are text, whatever it looks like.
+    """
     text = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
     table = csv.DictReader(io.StringIO(text.decode()))
-    return [{name: _value(cell) for name, cell in row.items()} for row in table]
+    return [
+        {name: cell if name in texts else _value(cell) for name, cell in row.items()}
+        for row in table
+    ]
 
 
 def _value(cell: str) -> Any:

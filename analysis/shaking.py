@@ -28,7 +28,7 @@ from scipy.optimize import brentq
 
 from analysis.command import run
 from analysis.rows import FIGURES, read_kept, write_rows
-from blocksim import bracket, load_design, read_rows, structure_of, sweep
+from blocksim import bracket, read_rows, structure_of, sweep
 from blocksim.ask.families import family_of
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.shaking import Shaking
@@ -161,19 +161,17 @@ def overturning(duration: float, width: float = 1.0, height: float = 4.0) -> flo
 
 def mapped(name: str, table: dict[str, Any], folder: Path, steps: int) -> list[dict[str, Any]]:
     """Shake a structure by half sines and constant pulses of many strengths and durations."""
-    lines = [f"{key} = {value!r}".replace("'", '"') for key, value in table.items()]
-    high, longest = {"block": (1.2, 1.0), "arch": (2.0, 1.0)}[name]
-    lines += [
-        'shake = "constant"',
-        'method = "pymunk"' if name == "block" else 'method = "direct"',
-        f"mu = {2.0 if name == 'block' else 0.8}",
-        f"amplitude_g = {{ low = 0.2, high = {high}, steps = {steps} }}",
-        f"duration_s = {{ low = 0.1, high = {longest}, steps = {steps} }}",
-    ]
-    path = folder / f"shaking_{name}.toml"
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    sweep(load_design(path), folder / f"shaking_{name}", workers=1)
-    return list(read_rows(folder / f"shaking_{name}"))
+    high, mu, method = (1.2, 2.0, "pymunk") if name == "block" else (2.0, 0.8, "direct")
+    asked = {
+        **table,
+        "shake": "constant",
+        "method": method,
+        "mu": mu,
+        "amplitude_g": {"low": 0.2, "high": high, "steps": steps},
+        "duration_s": {"low": 0.1, "high": 1.0, "steps": steps},
+    }
+    sweep(asked, folder / f"shaking_{name}", workers=1)
+    return list(map(dict, read_rows(folder / f"shaking_{name}")))
 
 
 def main(out: Path, *, quick: bool = False) -> Result:
