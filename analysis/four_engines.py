@@ -20,9 +20,8 @@ from matplotlib.lines import Line2D
 
 from analysis.command import run
 from analysis.drawing import few_colours
-from blocksim import Arch, CircularArch, JointState, Recording, simulate
+from blocksim import CircularArch, JointState, Recording, simulate
 from blocksim.arch.circular import GRAVITY
-from blocksim.arch.limit import least_thickness
 from blocksim.view.drawing import words_of
 from blocksim.view.film import BEFORE, FOOT, HEAD, TALL, Film, ViewName
 from blocksim.view.stage import Stage
@@ -41,12 +40,10 @@ TIMES = (0.0, 1.6, 2.8)
 
 def main(out: Path, *, quick: bool = False) -> dict[str, Recording]:
     """Let the arch go in each engine; draw the same moments of each."""
-    least = least_thickness(HALF_ANGLE, FRICTION, VOUSSOIRS).eta
-    assert least is not None  # noqa: S101
-    arch = Arch(half_angle=HALF_ANGLE, eta=(1 - THINNER) * least, voussoirs=VOUSSOIRS)
-    problem = CircularArch.of(arch, FRICTION).problem()
+    arch = CircularArch(half_angle=HALF_ANGLE, ratio=1 - THINNER, voussoirs=VOUSSOIRS,
+                        friction=FRICTION, weight="centreline")  # fmt: skip
     runs = {
-        name: simulate(problem, method=name, duration=LONGEST)
+        name: simulate(arch, method=name, duration=LONGEST)
         for name in (QUICK if quick else VIEWS)
     }
     out.mkdir(parents=True, exist_ok=True)

@@ -40,7 +40,7 @@ from blocksim import (
     check,
 )
 from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.limit.proof import proof_record
+from blocksim.limit.proof import Proof, proof_record
 from blocksim.verify import verify
 from tests.random_problems import Case, drawn
 
@@ -204,13 +204,7 @@ def asked(index: int) -> Row:
     found = check(problem, method="limit")
     proof = found.proof
     seconds = time.process_time() - started
-    holds = False
-    if proof is not None:
-        try:
-            verify(json.loads(json.dumps(proof_record(proof))))
-            holds = proof.claim == found.verdict.value
-        except ValueError:
-            pass
+    holds = proof is not None and is_accepted(proof) and proof.claim == found.verdict.value
     return Row(
         index=index,
         kind=kind,
@@ -222,6 +216,15 @@ def asked(index: int) -> Row:
         seconds=round(seconds, 4),
         **{name: _said(problem, name) for name in engines_of(index)},
     )
+
+
+def is_accepted(proof: Proof) -> bool:
+    """Tell whether the checker accepts a proof, as it is written to a file."""
+    try:
+        verify(json.loads(json.dumps(proof_record(proof))))
+    except ValueError:
+        return False
+    return True
 
 
 def engines_of(index: int) -> list[str]:

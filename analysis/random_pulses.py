@@ -22,6 +22,7 @@ from analysis.command import run
 from analysis.known_motions import blocks, box
 from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
+from analysis.shaking import ARCH
 from blocksim import Problem, structure_of
 from blocksim.blocks.shaking import Shaking, table_of
 from blocksim.simulation.shaken import shake
@@ -61,17 +62,7 @@ def structure(name: str) -> tuple[Problem, float]:
         ),
         "two towers of blocks": (blocks(0.6, *drums(3, 1, 1), *drums(2, 0.8, 1.2, 1.5)), 0.33),
         "arch of seven voussoirs": (
-            structure_of(
-                {
-                    "kind": "circular-arch",
-                    "friction": 0.8,
-                    "radius": 10.0,
-                    "thickness": 1.5,
-                    "voussoirs": 7,
-                    "left_deg": 78.75,
-                    "right_deg": 78.75,
-                }
-            ),
+            structure_of({**ARCH, "friction": 0.8}),
             0.3705,
         ),
         "wall of bricks": (

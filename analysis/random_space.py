@@ -16,7 +16,6 @@ that are cut the area of all joints is that of the cuts.
 
 from __future__ import annotations
 
-import json
 import math
 from collections import Counter
 from collections.abc import Callable
@@ -29,10 +28,9 @@ from scipy.spatial import ConvexHull
 
 import blocksim
 from analysis.command import run
+from analysis.random_proofs import is_accepted
 from analysis.rows import write_rows
 from blocksim import Load, Problem, Solid, Verdict
-from blocksim.limit.proof import Proof, proof_record
-from blocksim.verify import verify
 from tests.space_cases import enclosed, problem_of, rotation
 
 Draw = np.random.Generator
@@ -265,15 +263,6 @@ def judged(verdict: Verdict, known: Verdict) -> str:
     return "right" if verdict is known else "false"
 
 
-def checked(proof: Proof) -> str:
-    """Say whether the checker accepts a proof, as it is written to a file."""
-    try:
-        verify(json.loads(json.dumps(proof_record(proof))))
-    except ValueError:
-        return "refused"
-    return "accepted"
-
-
 def asked(seed: int) -> Row:
     """Ask all about one problem."""
     problem, family, area = drawn(seed)
@@ -307,7 +296,8 @@ def asked(seed: int) -> Row:
             continue
         there = problem.with_load(at)
         answer = blocksim.check(there)
-        proof = "none" if answer.proof is None else checked(answer.proof)
+        accepted = {True: "accepted", False: "refused", None: "none"}
+        proof = accepted[answer.proof and is_accepted(answer.proof)]
         row = replace(row, **{name: judged(answer.verdict, known), f"proof_{name}": proof})
         if seed in range(0, PROBLEMS, DIRECT) and len(assembly.blocks) < 16:
             seen = blocksim.check(there, method="direct").verdict

@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Sequence
-from concurrent.futures import as_completed
 from pathlib import Path
 from typing import TypeVar
 
 from analysis.rows import provenance
-from blocksim.common.processes import Hands
+from blocksim.common.processes import done
 
 Case = TypeVar("Case")
 Row = dict[str, float | int | str | bool | None]
@@ -30,23 +29,13 @@ def answers(
     left = [case for case in cases if repr(case) not in kept]
     made = provenance()
     with path.open("a", encoding="utf-8") as file:
-
-        def keep(case: Case, row: Row) -> None:
+        for at, found in done(ask, left, processes):
             # What answered is said with each answer: a study that goes on may be by other code.
-            row = {**row, **made}
-            kept[repr(case)] = row
-            file.write(json.dumps({"case": repr(case), "row": row}) + "\n")
+            case, row = repr(left[at]), {**found, **made}
+            kept[case] = row
+            file.write(json.dumps({"case": case, "row": row}) + "\n")
             file.flush()
             sys.stderr.write(f"{path.stem}: {len(kept)} of {len(cases)}\r")
-
-        if processes == 1:
-            for case in left:
-                keep(case, ask(case))
-        else:
-            with Hands(processes) as pool:
-                asked = {pool.submit(ask, case): case for case in left}
-                for future in as_completed(asked):
-                    keep(asked[future], future.result())
     return [kept[repr(case)] for case in cases]
 
 

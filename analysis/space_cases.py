@@ -17,6 +17,7 @@ from typing import Any
 
 import blocksim
 from analysis.command import run
+from analysis.random_space import judged
 from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
 from blocksim import Problem, Verdict
@@ -79,7 +80,6 @@ def ask(of: tuple[str, str, int]) -> Row:
     began = time.process_time()
     answer = blocksim.check(problem, method=method)
     seconds = time.process_time() - began
-    is_open, is_right = answer.verdict is Verdict.UNDECIDED, answer.verdict is known
     line = Line(
         case=name,
         method=method,
@@ -87,7 +87,7 @@ def ask(of: tuple[str, str, int]) -> Row:
         blocks=len(problem.assembly.blocks),
         known=str(known),
         found=str(answer.verdict),
-        right="open" if is_open else "right" if is_right else "false",
+        right=judged(answer.verdict, known),
         seconds=round(seconds, 2),
         evidence=answer.reason,
     )

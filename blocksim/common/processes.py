@@ -7,8 +7,8 @@ import signal
 import sys
 import threading
 import warnings
-from collections.abc import Callable, Generator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from multiprocessing import active_children, get_context, parent_process
 from typing import ParamSpec, Self, TypeVar
@@ -17,6 +17,7 @@ from blocksim.common.interrupts import KeptBack
 
 Asked = ParamSpec("Asked")
 Found = TypeVar("Found")
+Job = TypeVar("Job")
 
 
 class Hands:
@@ -64,6 +65,19 @@ class Hands:
             self._own.shutdown(wait=False, cancel_futures=True)
             self._own = None
         return self._given is None
+
+
+def done(
+    ask: Callable[[Job], Found], jobs: Sequence[Job], workers: int
+) -> Iterator[tuple[int, Found]]:
+    """Do jobs by so many processes, one is this one; give the place and result of each."""
+    if workers == 1:
+        yield from enumerate(map(ask, jobs))
+        return
+    with Hands(workers) as hands:
+        places = {hands.submit(ask, job): at for at, job in enumerate(jobs)}
+        for future in as_completed(places):
+            yield places[future], future.result()
 
 
 @contextmanager

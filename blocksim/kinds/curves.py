@@ -88,12 +88,17 @@ def where(rises: Callable[[Array], Array], levels: Array, low: float, high: floa
 
 def circle(shift: float, radius: float, start: float, end: float) -> Curve:
     """Return an arc about a centre at a height of 0, by the angle from the vertical."""
+    return ellipse(radius, radius, start, end, shift)
+
+
+def ellipse(across: float, up: float, start: float, end: float, shift: float = 0.0) -> Curve:
+    """Return a part of an ellipse of two radii about such a centre, by its own angle."""
     return Curve(
         start=start,
         end=end,
-        at=lambda s: (shift + radius * np.sin(s), radius * np.cos(s)),
-        first=lambda s: (radius * np.cos(s), -radius * np.sin(s)),
-        second=lambda s: (-radius * np.sin(s), -radius * np.cos(s)),
+        at=lambda s: (shift + across * np.sin(s), up * np.cos(s)),
+        first=lambda s: (across * np.cos(s), -up * np.sin(s)),
+        second=lambda s: (-across * np.sin(s), -up * np.cos(s)),
     )
 
 

@@ -6,11 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from blocksim.blocks.maker import metres
 from blocksim.kinds.archkind import CurvedArch
-from blocksim.kinds.curves import Curve
+from blocksim.kinds.curves import Curve, ellipse
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,11 +29,4 @@ class EllipticArch(CurvedArch):
 
     def curve(self) -> Curve:
         """Return the centreline, by the ellipse's angle."""
-        half, rise = self.span / 2, self.rise
-        return Curve(
-            start=-math.pi / 2,
-            end=math.pi / 2,
-            at=lambda s: (half * np.sin(s), rise * np.cos(s)),
-            first=lambda s: (half * np.cos(s), -rise * np.sin(s)),
-            second=lambda s: (-half * np.sin(s), -rise * np.cos(s)),
-        )
+        return ellipse(self.span / 2, self.rise, -math.pi / 2, math.pi / 2)

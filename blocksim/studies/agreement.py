@@ -2,42 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
-from concurrent.futures import as_completed
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
 from blocksim.arch.modes import Mode
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
-from blocksim.common.processes import Hands
-from blocksim.common.progress import Progress
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
-
-Job = TypeVar("Job")
-Found = TypeVar("Found")
-
-
-def answered(
-    ask: Callable[[Job], Found],
-    jobs: Sequence[tuple[str, Job]],
-    workers: int,
-    progress: Progress,
-) -> list[Found]:
-    """Do named jobs by so many processes, and return their results in order."""
-    if workers == 1:
-        found: list[Found] = []
-        for done, (name, job) in enumerate(jobs):
-            progress(done / len(jobs), name)
-            found.append(ask(job))
-        return found
-    with Hands(workers) as hands:
-        futures = {hands.submit(ask, job): name for name, job in jobs}
-        for done, future in enumerate(as_completed(futures)):
-            progress((done + 1) / len(jobs), futures[future])
-        return [future.result() for future in futures]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -12,11 +12,12 @@ from typing import NamedTuple
 from blocksim.ask.methods import asked_as, choose
 from blocksim.blocks.entries import ExpectEntry
 from blocksim.common.errors import InputError
+from blocksim.common.processes import done
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import ENGINES, NAMES, engine_named, get_engine
 from blocksim.kinds.files import shipped_structures
 from blocksim.kinds.loading import Known, load_known
-from blocksim.studies.agreement import Row, Unasked, answered
+from blocksim.studies.agreement import Row, Unasked
 from blocksim.studies.questions import answer
 
 LIMIT = "limit"
@@ -114,5 +115,9 @@ def validate(
         engine_named(name, "methods")
         get_engine(name)
     asked = [each for case in chosen for each in _questions(case, names)]
-    jobs = [(each.case.name, each) for each in asked if not each.refused]
-    return answered(Question.answer, jobs, workers, progress)
+    jobs = [each for each in asked if not each.refused]
+    found: dict[int, Row] = {}
+    for at, row in done(Question.answer, jobs, workers):
+        found[at] = row
+        progress(len(found) / len(jobs), row.structure)
+    return [found[at] for at in range(len(jobs))]
