@@ -12,7 +12,6 @@ from __future__ import annotations
 import json
 import subprocess
 import time
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -54,22 +53,11 @@ print(json.dumps([len(faces), pulls, found - began, done - found]))
 """
 
 
-@dataclass(frozen=True, kw_only=True)
-class Line:
-    """One structure by one program, and what it said: a verdict, forces, or what went wrong.
-
-    `pulls`: Of all blocks on each other, over all weight.
-    `finds_s`, `answers_s`: Processor time to find the joints, and to answer.
-    """
-
-    structure: str
-    thicker: float
-    method: str
-    said: str
-    faces: int | None = None
-    pulls: float | None = None
-    finds_s: float | None = None
-    answers_s: float | None = None
+EMPTY = dict.fromkeys(
+    ("structure", "thicker", "method", "said", "faces", "pulls", "finds_s", "answers_s")
+)
+"""Columns: what was said is a verdict, forces, or what went wrong; pulls are of all blocks on
+each other, over all weight; processor time is that to find the joints, and to answer."""
 
 
 def of_limit(problem: Problem[Any], made_s: float) -> dict[str, Any]:
@@ -122,7 +110,7 @@ def main(out: Path, *, quick: bool = False, other: str = "") -> str:
     other : str, optional
         Python that has compas_cra; without, `limit` alone is asked.
     """
-    rows = list[Line]()
+    rows = list[dict[str, Any]]()
     # What is loaded at first use is not counted.
     blocksim.check(ARCH)
     for name, kind, least in LEAST[:1] if quick else LEAST:
@@ -133,16 +121,16 @@ def main(out: Path, *, quick: bool = False, other: str = "") -> str:
             asked = {"limit": of_limit(problem, made_s)}
             for method in ("rbe_solve", "cra_solve") if other else ():
                 asked[method] = of_other(problem, method, other)
-            rows += [Line(structure=name, thicker=share, method=method, **said)
-                     for method, said in asked.items()]  # fmt: skip
-    write_rows(out / "beside_cra.csv", [asdict(row) for row in rows])
+            one = {**EMPTY, "structure": name, "thicker": share}
+            rows += [{**one, "method": method, **said} for method, said in asked.items()]
+    write_rows(out / "beside_cra.csv", rows)
     lines = ["| structure | thicker | method | said | pulls | joints | time |"]
     lines += ["|---|---|---|---|---|---|---|"]
     for row in rows:
-        spent = "" if row.answers_s is None else f"{row.answers_s:.2f} s"
-        pulls = "" if row.pulls is None else f"{row.pulls:.1e}"
-        cells = (row.structure, f"{row.thicker:+.0%}", row.method, row.said, pulls,
-                 str(row.faces or ""), spent)  # fmt: skip
+        spent = "" if row["answers_s"] is None else f"{row['answers_s']:.2f} s"
+        pulls = "" if row["pulls"] is None else f"{row['pulls']:.1e}"
+        cells = (row["structure"], f"{row['thicker']:+.0%}", row["method"], row["said"], pulls,
+                 str(row["faces"] or ""), spent)  # fmt: skip
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)
 

@@ -9,8 +9,8 @@ meridians, usually given as 0.042 to 0.043 of the radius (Heyman 1967, Lau 2006)
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, fields
 from pathlib import Path
+from typing import Any
 
 from matplotlib.figure import Figure
 
@@ -29,35 +29,13 @@ COLOURS = ("#332288", "#0072B2", "#009E73", "#B8860B", "#D55E00", "#AA4499")
 MARKERS = "PosD^v"
 
 
-@dataclass(frozen=True, kw_only=True)
-class Row:
-    """The least thickness of a dome, over its radius, and its joints just below.
+def row(lunes: int, mu: float, courses: int = 7) -> dict[str, Any]:
+    """Bracket one dome.
 
-    Parameters
-    ----------
-    lunes, courses : int
-    mu : float
-    least : float or None
-        None where no thickness up to the radius stands.
-    low, high : float or None
-        Where it was told to fall, and to stand.
-    meridians_part, beds_turn, slide : int
-        Joints between lunes that open or turn, beds that turn, and joints that slide.
+    Returns: `least` thickness over the radius, None where none up to it stands; `low` and
+        `high`, where it was told to fall, and to stand; just below, how many joints between
+        lunes open or turn (`meridians_part`), beds turn (`beds_turn`) and joints slide.
     """
-
-    lunes: int
-    courses: int
-    mu: float
-    least: float | None
-    low: float | None
-    high: float | None
-    meridians_part: int
-    beds_turn: int
-    slide: int
-
-
-def row(lunes: int, mu: float, courses: int = 7) -> Row:
-    """Bracket one dome."""
     dome = Dome(lunes=lunes, courses=courses, friction=mu)
     found = blocksim.bracket(dome.problem(), over="thickness")
     parts = turns = slides = 0
@@ -70,37 +48,37 @@ def row(lunes: int, mu: float, courses: int = 7) -> Row:
             slides += int(state in SLIDING)
             if state is not JointState.CLOSED and state not in SLIDING:
                 parts, turns = parts + int(upright), turns + int(not upright)
-    return Row(
-        lunes=lunes,
-        courses=courses,
-        mu=mu,
-        least=found.limit,
-        low=found.low,
-        high=found.high,
-        meridians_part=parts,
-        beds_turn=turns,
-        slide=slides,
-    )
+    return {
+        "lunes": lunes,
+        "courses": courses,
+        "mu": mu,
+        "least": found.limit,
+        "low": found.low,
+        "high": found.high,
+        "meridians_part": parts,
+        "beds_turn": turns,
+        "slide": slides,
+    }
 
 
-def figure(rows: list[Row]) -> Figure:
+def figure(rows: list[dict[str, Any]]) -> Figure:
     """Draw thickness over friction, a line a number of lunes; hollow where joints slide."""
     drawn = Figure(figsize=(7.5, 5))
     axes = drawn.add_subplot()
     axes.axhspan(*PUBLISHED, color="#dddddd", label="continuous hemisphere, published")
-    for at, lunes in enumerate(sorted({each.lunes for each in rows})):
-        mine = [each for each in rows if each.lunes == lunes and each.least is not None]
+    for at, lunes in enumerate(sorted({each["lunes"] for each in rows})):
+        mine = [each for each in rows if each["lunes"] == lunes and each["least"]]
         tone = COLOURS[at % len(COLOURS)]
-        axes.plot([e.mu for e in mine], [e.least or 0.0 for e in mine], color=tone, lw=1)
+        axes.plot([e["mu"] for e in mine], [e["least"] for e in mine], color=tone, lw=1)
         for each in mine:
             axes.plot(
-                each.mu, each.least or 0.0, MARKERS[at % len(MARKERS)], color=tone,
-                markerfacecolor="white" if each.slide else tone,
+                each["mu"], each["least"], MARKERS[at % len(MARKERS)], color=tone,
+                markerfacecolor="white" if each["slide"] else tone,
             )  # fmt: skip
         if mine:
             # Where they turn all lie on each other: each is named where it begins.
             axes.annotate(
-                f"{lunes} lunes", (mine[0].mu, mine[0].least or 0.0), xytext=(6, 2),
+                f"{lunes} lunes", (mine[0]["mu"], mine[0]["least"]), xytext=(6, 2),
                 textcoords="offset points", color=tone,
             )  # fmt: skip
     axes.set_xlabel("friction coefficient mu")
@@ -113,21 +91,16 @@ def figure(rows: list[Row]) -> Figure:
 
 def drawn_again(path: Path) -> None:
     """Draw what the rows that are kept say."""
-    names = [each.name for each in fields(Row)]
-    rows = [
-        Row(**{name: each[name] for name in names})
-        for each in read_kept(FIGURES / "dome_map.csv")
-    ]
     with path.open("wb") as file:
-        save_figure(figure(rows), file, "png")
+        save_figure(figure(read_kept(FIGURES / "dome_map.csv")), file, "png")
 
 
-def main(out: Path, *, quick: bool = False) -> list[Row]:
+def main(out: Path, *, quick: bool = False) -> list[dict[str, Any]]:
     """Bracket all domes, and draw their least thickness."""
     lunes, frictions = ((4, 8), (0.25, 0.7)) if quick else (LUNES, FRICTIONS)
     rows = [row(each, mu, 3 if quick else 7) for each in lunes for mu in frictions]
     make_folder(out)
-    write_rows(out / "dome_map.csv", [asdict(each) for each in rows])
+    write_rows(out / "dome_map.csv", rows)
     with (out / "dome_map.png").open("wb") as file:
         save_figure(figure(rows), file, "png")
     return rows

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -72,50 +72,26 @@ COLOURS = {each.value: tone for each, tone in VERDICTS.items()}
 MARKERS = {"stands": "o", "collapses": "x", "undecided": "?"}
 
 
-@dataclass(frozen=True, kw_only=True)
-class Row:
-    """One pulse whose least amplitude is known for its duration.
-
-    Parameters
-    ----------
-    name, engine : str
-    duration : float
-        [s]
-    known : float
-        Least amplitude that overturns [g].
-    low, high : float or None
-        Largest that was survived and least that was not, as found [g].
-    error : float
-        Of the farther end, relative.
-    seconds : float
-        Processor time.
-    """
-
-    name: str
-    engine: str
-    duration: float
-    known: float
-    low: float | None
-    high: float | None
-    error: float
-    seconds: float
-
-
 @dataclass(frozen=True)
 class Result:
     """Pulses, and the rows of the two maps."""
 
-    pulses: tuple[Row, ...]
+    pulses: tuple[dict[str, Any], ...]
     maps: dict[str, list[dict[str, Any]]]
 
     @property
     def worst(self) -> float:
         """Largest error of an end of a bracket."""
-        return max(row.error for row in self.pulses)
+        return max(row["error"] for row in self.pulses)
 
 
-def pulse(name: str, engine: str) -> Row:
-    """Bracket the amplitude of a pulse of the case's duration."""
+def pulse(name: str, engine: str) -> dict[str, Any]:
+    """Bracket the amplitude of a pulse of the case's duration [s].
+
+    Returns: The least amplitude that is `known` to overturn, the largest that was survived and
+        the least that was not [g], the `error` of the farther end, relative, and the processor
+        time in `seconds`.
+    """
     begin, known = time.process_time(), PULSES[name]
     duration = case(name)["expected"]["least_duration_s"]
     # The search begins away from what is known.
@@ -123,16 +99,16 @@ def pulse(name: str, engine: str) -> Row:
     problem = replace(structure_of(scenes(name)[0]), shaking=shaking)
     found = bracket(family_of(problem, "amplitude"), method=engine, tol=TOL)
     ends = [end for end in (found.low, found.high) if end is not None]
-    return Row(
-        name=name,
-        engine=engine,
-        duration=duration,
-        known=known,
-        low=found.low,
-        high=found.high,
-        error=max(abs(end / known - 1) for end in ends) if len(ends) > 1 else math.inf,
-        seconds=round(time.process_time() - begin, 1),
-    )
+    return {
+        "name": name,
+        "engine": engine,
+        "duration": duration,
+        "known": known,
+        "low": found.low,
+        "high": found.high,
+        "error": max(abs(end / known - 1) for end in ends) if len(ends) > 1 else math.inf,
+        "seconds": round(time.process_time() - begin, 1),
+    }
 
 
 def overturning(duration: float, width: float = 1.0, height: float = 4.0) -> float:
@@ -184,7 +160,7 @@ def main(out: Path, *, quick: bool = False) -> Result:
         for name, table in (("block", BLOCK), ("arch", ARCH))
     }
     result = Result(tuple(pulses), maps)
-    write_rows(out / "shaking.csv", [asdict(row) for row in pulses])
+    write_rows(out / "shaking.csv", pulses)
     write_rows(
         out / "shaking_map.csv",
         [

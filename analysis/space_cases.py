@@ -11,7 +11,6 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -32,36 +31,6 @@ BESIDE = {
 QUICK = ("block_topples_20", "tower_113")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Line:
-    """One question.
-
-    Parameters
-    ----------
-    case, method : str
-    beside : float
-        Share by which the load is beside the load factor; below 0 less, 0 for a verdict.
-    blocks : int
-    known, found : str
-        Verdicts.
-    right : str
-        "right", "open" or "false".
-    seconds : float
-        Processor time.
-    evidence : str
-    """
-
-    case: str
-    method: str
-    beside: float
-    blocks: int
-    known: str
-    found: str
-    right: str
-    seconds: float
-    evidence: str
-
-
 def questions(name: str, method: str) -> Iterator[tuple[float, Problem[Any], Verdict]]:
     """Give the share, the problem and what is known of it, of each question on a case."""
     if case(name)["question"] == "stands":
@@ -74,24 +43,27 @@ def questions(name: str, method: str) -> Iterator[tuple[float, Problem[Any], Ver
 
 
 def ask(of: tuple[str, str, int]) -> Row:
-    """Ask one question: of a method, about a case, by its number."""
+    """Ask one question: of a method, about a case, by its number.
+
+    Returns: `beside` is the share by which the load is beside the load factor, below 0 less, 0
+        for a verdict; `known` and `found` are verdicts; `right` is "right", "open" or "false".
+    """
     method, name, number = of
     beside, problem, known = list(questions(name, method))[number]
     began = time.process_time()
     answer = blocksim.check(problem, method=method)
     seconds = time.process_time() - began
-    line = Line(
-        case=name,
-        method=method,
-        beside=beside,
-        blocks=len(problem.assembly.blocks),
-        known=str(known),
-        found=str(answer.verdict),
-        right=judged(answer.verdict, known),
-        seconds=round(seconds, 2),
-        evidence=answer.reason,
-    )
-    return asdict(line)
+    return {
+        "case": name,
+        "method": method,
+        "beside": beside,
+        "blocks": len(problem.assembly.blocks),
+        "known": str(known),
+        "found": str(answer.verdict),
+        "right": judged(answer.verdict, known),
+        "seconds": round(seconds, 2),
+        "evidence": answer.reason,
+    }
 
 
 def table(rows: list[Row]) -> str:

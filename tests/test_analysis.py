@@ -116,7 +116,7 @@ def test_random_assemblies_are_enclosed(tmp_path: Path) -> None:
 def test_domes_are_bracketed_and_drawn(tmp_path: Path) -> None:
     """Where it turns a lune of any width carries itself; where it slides it needs more."""
     rows = {
-        (each.lunes, each.mu): each.least
+        (each["lunes"], each["mu"]): each["least"]
         for each in study("dome_map").main(tmp_path, quick=True)
     }
     assert rows[4, 0.7] == pytest.approx(rows[8, 0.7], rel=1e-6)

@@ -233,20 +233,20 @@ def test_the_page_has_a_part_on_structures(page: str) -> None:
     assert "load factor at collapse: 0.37053387, published as 0.37, opening at" in words
     assert "how it starts to fall at load factor 0.370904, by direct, enlarged" in words
     # Two more pictures of structures than of arches move, but not the catenary, which stands.
-    part = page[page.index('<section id="structures">') : page.index('<section id="how">')]
+    part = page[page.index('<article id="case-2">') : page.index('<section id="how">')]
     assert part.count("<svg") == 4
     assert part.count('type="range"') == 3
-    body = part[part.index('<tbody id="row-structure-1">') : part.index("</table>")]
+    body = page[page.index('<tbody id="row-2">') : page.index("</table>")]
     lines = re.findall(r"<tr>.*?</tr>", body, re.DOTALL)
     # Cells that methods share span their rows.
     assert [len(re.findall("<t[dh]", line)) for line in lines] == [9, 4, 4] * 3 + [9, 4]
     assert body.count(">yes<") == 10
     assert body.count(">no<") == 1
-    assert 'id="structures"' not in report_page([ROW], MAP, {"blocksim": "0.1"})
+    assert "other structures" not in report_page([ROW], MAP, {"blocksim": "0.1"})
 
 
 def test_pictures_are_of_the_mechanism(page: str, rows: list[Row]) -> None:
-    start = page.index('<article id="structure-1">')
+    start = page.index('<article id="case-2">')
     card = page[start : page.index("</article>", start)]
     assert card.count('class="stone"') == card.count('class="rest"') == 7
     for side in ("intrados", "extrados"):

@@ -102,7 +102,7 @@ def test_it_fits_the_window(page) -> None:
 
 
 def test_a_structure_moves_and_can_be_seen(page, windows: Windows) -> None:
-    figure = page.locator("#structure-1 .motion")
+    figure = page.locator("#case-4 .motion")
     piece = figure.locator(".piece").nth(5)
     moved = piece.get_attribute("transform")
     slider = figure.locator("input")
@@ -114,8 +114,8 @@ def test_a_structure_moves_and_can_be_seen(page, windows: Windows) -> None:
     look = "getComputedStyle(document.querySelector('article')).backgroundColor"
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
-        shares = [*lightness(page, "#structure-1 .stone")[:1]]
-        shares += lightness(page, "#structure-1 .footing")[:1]
+        shares = [*lightness(page, "#case-4 .stone")[:1]]
+        shares += lightness(page, "#case-4 .footing")[:1]
         ground = sum(map(int, page.evaluate(look)[4:-1].split(","))) / 765
         assert min(abs(share - ground) for share in shares) > 0.1
     # Nothing drawn is cut off: the svg holds all its blocks and its arrow.
@@ -138,7 +138,7 @@ def test_it_is_light_on_paper(page) -> None:
 
 def test_no_column_is_clipped(page) -> None:
     tables = page.locator(".wide:has(table)").all()
-    assert len(tables) == 2  # of arches, and of structures
+    assert len(tables) == 1
     for width, table in product((1280, 1440), tables):
         page.set_viewport_size({"width": width, "height": 900})
         frame = table.bounding_box()
@@ -152,7 +152,7 @@ def test_no_column_is_clipped(page) -> None:
 def test_a_phone_is_told_what_scrolls(page) -> None:
     page.set_viewport_size({"width": 375, "height": 812})
     hints = page.locator(".sideways")
-    for index in range(3):
+    for index in range(2):
         playwright.expect(hints.nth(index)).to_be_visible()
         assert "sideways" in hints.nth(index).inner_text()
     page.emulate_media(media="print")

@@ -15,8 +15,8 @@ from blocksim.common.checks import Range
 from blocksim.common.files import make_folder
 from blocksim.common.words import counted
 from blocksim.engines import NAMES, engine_named
-from blocksim.report.answerwords import ratio, signed
-from blocksim.report.structurepart import found_of, summary_of_structures
+from blocksim.report.answerwords import signed
+from blocksim.report.rowwords import found_of, known_of, summary
 from blocksim.studies.agreement import Row, disagreements, parted
 from blocksim.studies.chart import Point, cases, measure, on_front
 from blocksim.studies.validate import LIMIT, structures, unasked
@@ -89,15 +89,12 @@ def answer_table(rows: Sequence[Row]) -> Table:
 
 def _told(row: Row) -> tuple[tuple[str, ...], str, str]:
     """Return a question with what is known of it, the method asked, and its answer."""
+    known, published, answer = known_of(row), row.published or "-", found_of(row)
     if row.modes_published:
-        known = f"{row.mode_limit or ''} {ratio(row.expected)}".strip()
-        published = f"{'/'.join(row.modes_published)} {row.published or '-'}"
+        known = f"{row.mode_limit or ''} {known}".strip()
+        published = f"{'/'.join(row.modes_published)} {published}"
         error = "" if row.error is None else f" {signed(100 * row.error, 3)}%"
         answer = f"{row.mode or '-'}{error}"
-    else:
-        wanted = "" if row.expected is None else f"{row.expected:.8g}"
-        known = row.expected_verdict.value if row.expected_verdict else wanted
-        published, answer = row.published or "-", found_of(row)
     question = (row.structure, row.question, known, published)
     return question, row.method, f"{answer} !" if row.miss else answer
 
@@ -112,7 +109,7 @@ def answer_lines(rows: Sequence[Row]) -> list[str]:
         "  engines: the mode that is seen, and how far their least thickness is from known",
         f"{right} of {len(arches)} answers of engines agree with limit: thickness, mode "
         "and verdict",
-        summary_of_structures(built).removesuffix("."),
+        *([summary(built).removesuffix(".")] if built else []),
     ]
     lines += [
         f"  {name}, {over}, {method}: {row.miss} ({row.note})"
