@@ -11,21 +11,51 @@ from markdown_table import table
 from pydantic import TypeAdapter
 
 from blocksim.blocks.entries import Around, StructureFile
+from blocksim.common.fields import Field
+from blocksim.engines.base import Settings
+from blocksim.simulation.simulated import SETTINGS
+from blocksim.sweeps.case import ACTING
 from blocksim.sweeps.design import How
-from blocksim.sweeps.load import DesignFile
+from blocksim.sweeps.load import COMMON
 
 
 def of_format(which: str) -> str:
     """Tables of the keys of a file: one of its top, one for each table inside it."""
-    schemas = {"structure": StructureFile, "design": DesignFile}
-    schema = TypeAdapter(schemas[which]).json_schema()
+    schema = TypeAdapter({"structure": StructureFile, "design": How}[which]).json_schema()
     parts = {"": schema, **{_word(name): part for name, part in schema["$defs"].items()}}
     tables = [
         (f"**{name}**: {_sentence(part)}\n\n" if name else "") + _keys(part)
         for name, part in parts.items()
         if "properties" in part
     ]
-    return "\n\n".join(tables)
+    return "\n\n".join([*tables, *_of_designs()] if which == "design" else tables)
+
+
+def _of_designs() -> list[str]:
+    """Tables of the axes that designs of any kind may have, and of their settings."""
+    about = {"mu": Field(about="friction coefficient; inf allowed"), **ACTING}
+    axes = [[f"`{name}`", f"{each.about}{_unit(name)}"] for name, each in about.items()]
+    common = [[f"`{name}`", "what all structures have in common"] for name in COMMON]
+    kind = ["`kind`", "of structure; `circular-arch` if left out"]
+    said = cleandoc(Settings.__doc__ or "")
+    settings = [
+        [f"`{name}`", " ".join(found[1].split())]
+        for name in SETTINGS
+        if (found := re.search(rf"^{name} : .*\n((?:    .*\n?)+)", said, flags=re.MULTILINE))
+    ]
+    return [
+        "**axes**, besides one for each parameter of the kind; `mu` must be given.\n\n"
+        + table(["key", "what it is"], [*axes, kind, *common]),
+        "**settings**: of engines, instead of what their rules say; each is an axis. Lengths "
+        "are in units of the size, times of sqrt(size/g).\n\n"
+        + table(["key", "what it is"], settings),
+    ]
+
+
+def _unit(name: str) -> str:
+    """Say the unit that ends a name."""
+    end = name.rpartition("_")[2]
+    return f" [{end}]" if end in {"deg", "g", "s"} else ""
 
 
 def _word(name: str) -> str:
@@ -55,7 +85,7 @@ def _keys(part: dict[str, Any]) -> str:
 def _described(part: dict[str, Any]) -> dict[str, str]:
     """Return what a docstring says of each key, bases included: `key`, `other`: What it is."""
     text = part.get("description", "")
-    base = {"StructureFile": Around, "DesignFile": How}.get(part.get("title", ""))
+    base = {"StructureFile": Around}.get(part.get("title", ""))
     if base is not None:
         text += "\n" + cleandoc(base.__doc__ or "")
     said = dict[str, str]()
@@ -98,6 +128,8 @@ def _kind(part: dict[str, Any], *, many: bool = False) -> str:
             return _list(part, many=many)
         case "integer" | "number":
             return _number(part, many=many)
+        case "object":
+            return "table"
     return "anything"
 
 

@@ -292,7 +292,7 @@ def test_tables_in_pages_are_as_code_and_rows_say(name: str) -> None:
 @pytest.mark.parametrize("which", ["structure", "design"])
 def test_every_key_of_a_file_is_described(which: str) -> None:
     table = module("tables").made(f"format {which}")
-    rows = re.findall(r"^\| (`\w+`) .* \| ([^|]*) \|$", table, flags=re.MULTILINE)
+    rows = re.findall(r"^\| (`\w+`)(?: .*)? \| ([^|]*) \|$", table, flags=re.MULTILINE)
     assert len(rows) > 10
     assert [name for name, said in rows if not said.strip()] == []
 

@@ -30,7 +30,9 @@ PLAIN = NEEDED | {"eta", "ratio"}
 ACTING = {
     "load": Field(about="factor on the live loads", range=FACTOR),
     "tilt_deg": Field(about="tilt of the table", range=TILT_DEG),
-    "azimuth_deg": Field(about="in space, towards where the table tilts", range=TILT_DEG),
+    "azimuth_deg": Field(
+        about="in space, towards where it tilts, from x towards y", range=TILT_DEG
+    ),
     "amplitude_g": Field(about="how strongly the ground shakes", range=AMPLITUDE),
     "duration_s": Field(about="how long it shakes", range=DURATION),
 }

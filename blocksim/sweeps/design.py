@@ -6,7 +6,7 @@ import itertools
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Any, cast
 
 import numpy as np
@@ -105,36 +105,8 @@ class RandomTable(Written):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SettingsTable(Written):
-    """Table `[settings]`: of engines, instead of what their rules say; see `Settings`.
-
-    `step`: Length of a step [sqrt(r/g)].
-    `accuracy`: Share by which motion may be off; steps follow.
-    `sweeps`: Sweeps over the contacts in each step of a moving run.
-    `hold_sweeps`: The most sweeps an onset test may take.
-    `still`: Acceleration that counts as rest [g].
-    `rest`: Displacement that counts as rest, over the radius.
-    `restitution`: Share of the velocity with which blocks hit that they part with.
-    """
-
-    step: AxisField | None = None
-    accuracy: AxisField | None = None
-    sweeps: AxisField | None = None
-    hold_sweeps: AxisField | None = None
-    still: AxisField | None = None
-    rest: AxisField | None = None
-    restitution: AxisField | None = None
-
-    @property
-    def axes(self) -> dict[str, Axis]:
-        """Those given, by name."""
-        axes = {name: cast("Axis | None", getattr(self, name)) for name in SETTINGS}
-        return {name: axis for name, axis in axes.items() if axis is not None}
-
-
-@dataclass(frozen=True, kw_only=True)
-class How:
-    """Settings of the questions of a sweep.
+class How(Written):
+    """How a sweep asks: the keys of a design file that are no axes.
 
     `over`: Parameter to bracket over; without it the question is whether it stands. Of arches
         by their half-angle it is `thickness` where none is given.
@@ -145,7 +117,8 @@ class How:
     `tol`: Relative width of a bracket.
     `confirm`: Let blocks go at both ends of an engine's bracket; without, the onset test alone
         answers, in about half of the time.
-    `settings`: Axes like any other; a method is given those it is run with.
+    `settings`: Of engines, instead of what their rules say (`Settings`): axes like any other; a
+        method is given those it is run with.
     `random`: Draws structures instead.
     """
 
@@ -154,7 +127,7 @@ class How:
     band: Number | None = None
     tol: Number = 0.005
     confirm: Annotated[bool, Said(strict=True)] = True
-    settings: SettingsTable = SettingsTable()
+    settings: dict[str, AxisField] = field(default_factory=dict[str, Axis])
     random: RandomTable | None = None
 
 
@@ -187,7 +160,7 @@ class Design(How):
         """Number of cases, those that occur twice included."""
         if self.random is not None:
             return self.random.count * len(self.method)
-        axes = *self.axes.values(), *self.settings.axes.values()
+        axes = *self.axes.values(), *self.settings.values()
         return math.prod(len(every(axis)) for axis in axes) * len(self.method)
 
     def is_whole(self, name: str) -> bool:
@@ -196,7 +169,7 @@ class Design(How):
 
     def cases(self) -> Iterator[Case]:
         """Give the cases one after the other, always in the same order."""
-        names, own = tuple(self.axes), tuple(self.settings.axes)
+        names, own = tuple(self.axes), tuple(self.settings)
         whole = [at for at, name in enumerate(names) if self.is_whole(name)]
         rest = self._common
         free = [(method, *self._width(method), self.taken(method)) for method in self.method]
@@ -233,13 +206,13 @@ class Design(How):
         return (0.0, self.tol) if self.over is not None else (self.band or band, 0.0)
 
     def _grid(self) -> Iterator[tuple[Value, ...]]:
-        axes = *self.axes.values(), *self.settings.axes.values()
+        axes = *self.axes.values(), *self.settings.values()
         return itertools.product(*map(every, axes))
 
     def _drawn(self, table: RandomTable) -> Iterator[tuple[Value, ...]]:
         generator = np.random.default_rng(table.seed)
         axes = [(axis, self.is_whole(name)) for name, axis in self.axes.items()]
-        own = self.settings.axes.items()
+        own = self.settings.items()
         axes += [(axis, SETTINGS[name].whole) for name, axis in own]
         for start in range(0, table.count, DRAWN_AT_ONCE):
             drawn: list[list[Any]] = []

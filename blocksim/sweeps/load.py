@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields, replace
 from typing import Any
 
 from blocksim.arch.circular import WEIGHTS
@@ -23,11 +23,11 @@ from blocksim.common.checks import (
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.fields import Field, fields_of
 from blocksim.common.files import AnyPath, read_toml
-from blocksim.common.tables import Written, as_said
+from blocksim.common.tables import as_said
 from blocksim.engines import ENGINES
 from blocksim.kinds import KINDS
 from blocksim.kinds.circular import CircularArch
-from blocksim.simulation.simulated import require_setting
+from blocksim.simulation.simulated import SETTINGS, require_setting
 from blocksim.sweeps.case import ACTING, PLAIN, Value
 from blocksim.sweeps.design import Axis, AxisField, Design, How, Values, Words, require_axis
 
@@ -44,34 +44,7 @@ BY_ANGLE: dict[str, Field] = {
 USUAL_ARCH = {"voussoirs": 27, "weight": "centreline"}
 
 
-@dataclass(frozen=True, kw_only=True)
-class DesignFile(How, Written):
-    """A design file, without the parameters of its kind.
-
-    `kind`: Of structure.
-    `mu`: Friction coefficient; inf allowed.
-    `load`: Factor on the live loads.
-    `tilt_deg`: Slope of the table [deg].
-    `azimuth_deg`: In space, towards where the table tilts, from x towards y [deg].
-    `amplitude_g`, `duration_s`: How strongly [g] and how long [s] the ground shakes.
-    `live`, `dead`, `move`, `density`, `shake`: What all structures have in common.
-    """
-
-    mu: AxisField
-    kind: str = CircularArch.name
-    load: AxisField | None = None
-    tilt_deg: AxisField | None = None
-    azimuth_deg: AxisField | None = None
-    amplitude_g: AxisField | None = None
-    duration_s: AxisField | None = None
-    live: Any = None
-    dead: Any = None
-    move: Any = None
-    density: Any = None
-    shake: Any = None
-
-
-KEYS = tuple(each.name for each in fields(DesignFile))
+HOW = tuple(each.name for each in fields(How))
 
 
 def load_design(path: AnyPath) -> Design:
@@ -80,8 +53,8 @@ def load_design(path: AnyPath) -> Design:
     Parameters
     ----------
     path : Path
-        TOML file with the fields of `DesignFile` and an axis for any parameter of its kind. One
-        without `kind` is of circular arches.
+        TOML file with the fields of `How`, and an axis for `mu`, for any parameter of its
+        `kind` and for what acts. One without `kind` is of circular arches.
 
     Returns
     -------
@@ -102,27 +75,31 @@ def load_design(path: AnyPath) -> Design:
 def design_of(table: Mapping[str, Any]) -> Design:
     """Make a design of what its file says."""
     kind = _kind({"kind": CircularArch.name, **table}, "kind")
-    parameters = fields_of(kind)
+    parameters = dict(fields_of(kind))
     by_angle = kind is CircularArch and ("half_angle_deg" in table or "kind" not in table)
     if by_angle:
         parameters = parameters | BY_ANGLE
-    _require_known(table, (*KEYS, *parameters), "")
+    parameters["mu"] = Field(range=FRICTION if by_angle else SMOOTH_OR_ROUGH)
+    parameters |= ACTING
+    _require_known(table, ("kind", *HOW, *COMMON, *parameters), "")
     if by_angle:
         require("half_angle_deg" in table, "half_angle_deg", MISSING, "given (or kind)")
         table = USUAL_ARCH | dict(table)
         if not {"eta", "ratio", "thickness", "over"} & {*table}:
             table["over"] = "thickness"
-    written = as_said(DesignFile, {key: table[key] for key in KEYS if key in table})
+    require("mu" in table, "mu", MISSING, "given")
+    how = as_said(How, {key: table[key] for key in HOW if key in table})
+    said: Any = table.get("settings", {})
+    _require_known(said, tuple(SETTINGS), "settings.")
     axes, known, rest = _axes(parameters, table)
-    axes["mu"], known["mu"] = written.mu, Field(range=FRICTION if by_angle else SMOOTH_OR_ROUGH)
     if by_angle:
         axes = {name: axes[name] for name in sorted(axes, key=_place)}
-    axes |= {name: axis for name in ACTING if (axis := getattr(written, name)) is not None}
+    settings = {name: how.settings[name] for name in SETTINGS if name in how.settings}
     design = Design(
-        **{each.name: getattr(written, each.name) for each in fields(How)},
+        **vars(replace(how, settings=settings)),
         kind=kind.name,
         axes=axes,
-        known=known | ACTING,
+        known=known,
         rest=rest | {key: table[key] for key in COMMON if key in table},
     )
     _require_ranges(design)
@@ -211,7 +188,7 @@ def _require_ranges(design: Design) -> None:
                 values = axis.every()
         for value in values:
             design.known[name].require(name, value)
-    for name, axis in design.settings.axes.items():
+    for name, axis in design.settings.items():
         require_axis(f"settings.{name}", axis, spaced)
         for value in axis.every() if spaced else axis.ends:
             require_setting(name, value)
@@ -256,7 +233,7 @@ def _require_asked(design: Design, kind: type[Kind[Any]]) -> None:
     for name in sorted({*design.method} - {"auto"}) if over is not None else ():
         finest = METHODS[name].finest
         require(design.tol >= finest, "tol", design.tol, f"at least {finest:g} for {name}")
-    for name in design.settings.axes:
+    for name in design.settings:
         taken = any(name in design.taken(method) for method in design.method)
         allowed = "left out: no method asked is run with it"
         require(taken, f"settings.{name}", "given", allowed)
