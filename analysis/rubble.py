@@ -49,8 +49,9 @@ from blocksim import (
 )
 from blocksim.arch.limit import least_thickness
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
+from blocksim.blocks.outlines import width
 from blocksim.engines.energy import energy
-from blocksim.engines.solids import Solids, width
+from blocksim.engines.solids import Solids
 
 SEED = 16
 COUNT = 20

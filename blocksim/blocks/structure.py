@@ -6,7 +6,7 @@ Lengths in m, forces in N, y upwards. Its keys are those of `entries.StructureFi
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from typing import Any
 
@@ -163,18 +163,58 @@ def load_record(load: Load, names: Sequence[str]) -> list[dict[str, Any]]:
     return [{"block": name, "force": load.force.tolist(), **at} for name in blocks]
 
 
-def structure_record(problem: Problem) -> dict[str, Any]:
-    """Write a problem as a structure file does; `structure_of` reads it back.
+def record_of(
+    problem: Problem[Any],
+    *,
+    block: Callable[[int], dict[str, Any]],
+    bed: Callable[[Any], dict[str, Any]],
+    ground: Callable[[Any], list[list[float]]],
+    joint: Callable[[Any], dict[str, Any]],
+) -> dict[str, Any]:
+    """Write a problem as a structure file does, in the plane or in space.
 
-    A support that is not known as a body gets one: a flat triangle behind its joint.
+    A support that is not known as a body gets one behind its joint.
+
+    `block`: Says what a block is that moves, by its place.
+    `bed`, `joint`: Say what a support is, and where a joint.
+    `ground`: Returns corners of a body behind a joint.
     """
-    assembly = problem.assembly
+    assembly: Any = problem.assembly
     names, beds = ids_of(assembly)
-    grounds = {
-        f"ground {index}": _ground(joint)
-        for index, joint in enumerate(assembly.joints)
-        if joint.support is None and SUPPORT in (joint.before, joint.after)
+    grounds = {at: f"ground {at}" for at, each in enumerate(assembly.joints)
+               if each.support is None and SUPPORT in (each.before, each.after)}  # fmt: skip
+    fixed = [(name, bed(each)) for name, each in zip(beds, assembly.supports, strict=True)]
+    fixed += [(name, {"vertices": ground(assembly.joints[at])}) for at, name in grounds.items()]
+    joints: list[dict[str, Any]] = []
+    for at, each in enumerate(assembly.joints):
+        on = grounds.get(at, "") if each.support is None else beds[int(each.support)]
+        sides = int(each.before), int(each.after)
+        a, b = (on if side == SUPPORT else names[side] for side in sides)
+        own = {} if each.friction is None else {"friction": endless_text(each.friction)}
+        joints.append({"a": a, "b": b, **joint(each), **own})
+    return {
+        "title": problem.title,
+        "source": problem.source,
+        "friction": endless_text(problem.mu),
+        "load": problem.load,
+        "blocks": [
+            *({"id": name, **said, "fixed": True} for name, said in fixed),
+            *({"id": name, **block(at)} for at, name in enumerate(names)),
+        ],
+        "joints": joints,
+        "dead": [
+            {"body": problem.gravity.tolist()},
+            *(each for load in problem.dead for each in load_record(load, names)),
+        ],
+        "live": [each for load in problem.live for each in load_record(load, names)],
     }
+
+
+def structure_record(problem: Problem) -> dict[str, Any]:
+    """Write a problem as a structure file does; `structure_of` reads it back."""
+    assembly = problem.assembly
+    _, beds = ids_of(assembly)
+    touched = set(assembly.sides.ravel().tolist())
     moves = [
         {
             "block": beds[move.support],
@@ -185,34 +225,14 @@ def structure_record(problem: Problem) -> dict[str, Any]:
         for move in problem.moves
     ]
     return {
-        "title": problem.title,
-        "source": problem.source,
-        "friction": endless_text(problem.mu),
+        **record_of(
+            problem,
+            block=lambda at: _block_record(problem, at, free=at not in touched),
+            bed=lambda bed: {"polygons": [each.tolist() for each in bed.polygons]},
+            ground=_ground,
+            joint=_joint_record,
+        ),
         "size": assembly.size,
-        "load": problem.load,
-        "blocks": [
-            *(
-                {
-                    "id": name,
-                    "polygons": [each.tolist() for each in bed.polygons],
-                    "fixed": True,
-                }
-                for name, bed in zip(beds, assembly.supports, strict=True)
-            ),
-            *({"id": name, "vertices": each, "fixed": True} for name, each in grounds.items()),
-            *_block_records(names, problem),
-        ],
-        "joints": [
-            _joint_record(
-                joint, names, f"ground {at}" if joint.support is None else beds[joint.support]
-            )
-            for at, joint in enumerate(assembly.joints)
-        ],
-        "dead": [
-            {"body": problem.gravity.tolist()},
-            *(each for load in problem.dead for each in load_record(load, names)),
-        ],
-        "live": [each for load in problem.live for each in load_record(load, names)],
         "move": moves,
         **({} if problem.shaking is None else {"shake": shaking_record(problem.shaking)}),
     }
@@ -235,36 +255,26 @@ def _ground(joint: Joint) -> list[list[float]]:
     return counter_clockwise(corners).tolist()
 
 
-def _block_records(names: Sequence[str], problem: Problem) -> Iterator[dict[str, Any]]:
-    """Go through the blocks as entries; their joints are given, so each may be free."""
-    touched = set(problem.assembly.sides.ravel().tolist())
-    for at, (name, block) in enumerate(zip(names, problem.assembly.blocks, strict=True)):
-        entry = {
-            "id": name,
-            "weight": block.mass * STANDARD_GRAVITY,
-            "centre": block.centre.tolist(),
-            "inertia": block.inertia,
-            "depth": block.depth,
-            "polygons": [part.tolist() for part in block.polygons],
-        }
-        if at not in touched:
-            entry["free"] = True
-        if len(problem.velocities):
-            *velocity, turn = problem.velocities[at].tolist()
-            entry |= {"velocity": velocity, "spin_deg_s": math.degrees(turn)}
-        yield entry
-
-
-def _joint_record(joint: Joint, names: Sequence[str], ground: str) -> dict[str, Any]:
-    entry: dict[str, Any] = {
-        "a": ground if joint.before == SUPPORT else names[joint.before],
-        "b": ground if joint.after == SUPPORT else names[joint.after],
-        "ends": [joint.inner.tolist(), joint.outer.tolist()],
+def _block_record(problem: Problem, at: int, *, free: bool) -> dict[str, Any]:
+    """Return what a file says of a block; joints are given, so it may be free."""
+    block = problem.assembly.blocks[at]
+    entry = {
+        "weight": block.mass * STANDARD_GRAVITY,
+        "centre": block.centre.tolist(),
+        "inertia": block.inertia,
+        "depth": block.depth,
+        "polygons": [part.tolist() for part in block.polygons],
     }
-    if joint.across is not None:
-        entry |= {"ends": [joint.inner.tolist()], "normal": joint.across.tolist()}
-    if joint.faces is not None:
-        entry["faces"] = joint.faces.tolist()
-    if joint.friction is not None:
-        entry["friction"] = endless_text(joint.friction)
+    if free:
+        entry["free"] = True
+    if len(problem.velocities):
+        *velocity, turn = problem.velocities[at].tolist()
+        entry |= {"velocity": velocity, "spin_deg_s": math.degrees(turn)}
     return entry
+
+
+def _joint_record(joint: Joint) -> dict[str, Any]:
+    entry: dict[str, Any] = {"ends": [joint.inner.tolist(), joint.outer.tolist()]}
+    if joint.across is not None:
+        entry = {"ends": [joint.inner.tolist()], "normal": joint.across.tolist()}
+    return entry if joint.faces is None else {**entry, "faces": joint.faces.tolist()}

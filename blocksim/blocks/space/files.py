@@ -26,11 +26,11 @@ from blocksim.blocks.entries import (
 )
 from blocksim.blocks.loads import LoadsOf, acting_of, given_joints, named_blocks
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.space.assembly import FaceJoint, Solid, SpatialAssembly
+from blocksim.blocks.space.assembly import FaceJoint, Solid, SolidBlock, SpatialAssembly
 from blocksim.blocks.space.joining import MOST_SOLIDS, assembly_in_space
 from blocksim.blocks.space.polyhedron import frame
-from blocksim.blocks.structure import ids_of, load_record
-from blocksim.common.checks import WEIGHT, endless_text, require
+from blocksim.blocks.structure import record_of
+from blocksim.common.checks import WEIGHT, require
 from blocksim.common.tables import Written, as_said
 
 MOST_CORNERS = 1000
@@ -202,47 +202,20 @@ def _joints(written: SpatialFile, solids: Sequence[Solid]) -> list[FaceJoint] | 
 
 
 def solids_record(problem: Problem[SpatialAssembly]) -> dict[str, Any]:
-    """Write a problem as a structure file in space does; `problem_in_space` reads it back.
+    """Write a problem as a structure file in space does; `problem_in_space` reads it back."""
 
-    A support that is not known as a body gets one: a tetrahedron behind its joint.
-    """
-    assembly = problem.assembly
-    names, beds = ids_of(assembly)
-    unknown = {at: f"ground {at}" for at, joint in enumerate(assembly.joints)
-               if joint.support is None and SUPPORT in (joint.before, joint.after)}  # fmt: skip
-    solids = [(names, assembly.blocks, False), (beds, assembly.supports, True)]
-    blocks: list[dict[str, Any]] = [
-        {
-            "id": name,
-            "polyhedra": [hull.corners.tolist() for hull in block.hulls],
-            **({"fixed": True} if fixed else {"weight": block.weight}),
-            "centre": block.centre.tolist(),
-        }
-        for ids, solid, fixed in solids
-        for name, block in zip(ids, solid, strict=True)
-    ]
-    blocks += [{"id": name, "vertices": _ground(assembly.joints[at]), "fixed": True}
-               for at, name in unknown.items()]  # fmt: skip
-    joints: list[dict[str, Any]] = []
-    for at, joint in enumerate(assembly.joints):
-        bed = unknown.get(at, "") if joint.support is None else beds[joint.support]
-        a, b = (bed if side == SUPPORT else names[side] for side in (joint.before, joint.after))
-        own = {} if joint.friction is None else {"friction": endless_text(joint.friction)}
-        corners, normal = joint.points.tolist(), joint.normal.tolist()
-        joints.append({"a": a, "b": b, "points": corners, "normal": normal, **own})
-    return {
-        "title": problem.title,
-        "source": problem.source,
-        "friction": endless_text(problem.mu),
-        "load": problem.load,
-        "blocks": blocks,
-        "joints": joints,
-        "dead": [
-            {"body": problem.gravity.tolist()},
-            *(each for load in problem.dead for each in load_record(load, names)),
-        ],
-        "live": [each for load in problem.live for each in load_record(load, names)],
-    }
+    def solid(block: SolidBlock) -> dict[str, Any]:
+        hulls = [hull.corners.tolist() for hull in block.hulls]
+        return {"polyhedra": hulls, "centre": block.centre.tolist()}
+
+    blocks = problem.assembly.blocks
+    return record_of(
+        problem,
+        block=lambda at: {**solid(blocks[at]), "weight": blocks[at].weight},
+        bed=solid,
+        ground=_ground,
+        joint=lambda at: {"points": at.points.tolist(), "normal": at.normal.tolist()},
+    )
 
 
 def _ground(joint: FaceJoint) -> list[list[float]]:
