@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.bodies import about
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.blocks.space.points import JointPoints
@@ -61,9 +62,7 @@ def statics_of_stack(problem: Problem) -> Stacked | None:
     joints = assembly.joint_arrays
     if joints.is_corner.any() or not (np.isfinite(mu) & (mu > 0)).all() or bears(problem):
         return None
-    pull = problem.applied_forces()
-    arms = assembly.built[:-1, :2]
-    pull[:, 2] += arms[:, 0] * pull[:, 1] - arms[:, 1] * pull[:, 0]
+    pull = about(problem.applied_forces(), -assembly.built[:-1, :2])
     ways = _ways(assembly.sides, len(pull))
     if ways is None:
         return None

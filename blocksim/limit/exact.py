@@ -156,6 +156,12 @@ def spun(turn: Sequence[Any], arm: Sequence[Any]) -> list[Any]:
     return moment(turn, arm)
 
 
+def along_and_across(way: Sequence[Any], n: Point) -> tuple[Any, Any]:
+    """Return the part along a normal, and the square of that across, times its length."""
+    side = moment(way, n)
+    return sum(p * q for p, q in zip(way, n, strict=True)), sum(each * each for each in side)
+
+
 def whole_numbers(values: Sequence[float]) -> tuple[Fraction, list[int]]:
     """Return a power of two, and values as whole multiples of it."""
     ratios = [each.as_integer_ratio() for each in values]

@@ -27,9 +27,18 @@ from typing import Any, Literal
 
 import numpy as np
 
-from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
+from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.common.version import __version__
-from blocksim.limit.exact import NOTHING, SLACK, Exact, Number, whole_numbers
+from blocksim.limit.exact import (
+    NOTHING,
+    SLACK,
+    Exact,
+    Number,
+    along_and_across,
+    apart,
+    spun,
+    whole_numbers,
+)
 from blocksim.limit.handing import handed_on
 from blocksim.limit.rational import Bodies, as_bodies
 from blocksim.verify import FORMAT, seal
@@ -138,15 +147,17 @@ def proof_of_fall(
 ) -> Proof | None:
     """Prove that a problem falls.
 
-    `rates`, (blocks, 3): As of `Equilibrium`, of a mechanism that opens joints by more than
-        round-off.
-    `owner`, (blocks,) sequence of int: As of `proof_in_rationals`; by default each block moves
-        by itself.
+    `rates`, (3 blocks,) or (6 blocks,), or a row a block: As of `Equilibrium`, of a mechanism
+        that opens joints by more than round-off.
+    `owner`, (blocks,) sequence of int: Body of each block, of those that move as one, `SUPPORT`
+        at rest; by default each moves by itself.
     Returns: None where these rates prove nothing.
     """
-    size = exact.problem.assembly.size / float(exact.grain)
-    _, whole = whole_numbers((rates * [size, size, 1.0]).ravel().tolist())
-    each = [whole[at : at + PLANAR] for at in range(0, len(whole), PLANAR)]
+    scaled = rates.reshape(len(exact.centres), -1).copy()
+    scaled[:, : exact.axes] *= exact.problem.assembly.size / float(exact.grain)
+    _, whole = whole_numbers(scaled.ravel().tolist())
+    count = scaled.shape[1]
+    each = [whole[at : at + count] for at in range(0, len(whole), count)]
     return _of_motion(exact, each if owner is None else as_bodies(exact, each, owner))
 
 
@@ -198,10 +209,11 @@ def proof_in_rationals(exact: Exact, weights: Array, owner: Sequence[int]) -> Pr
 
 def _of_motion(exact: Exact, rates: list[list[int]]) -> Proof | None:
     """Prove that blocks fall by a motion; None where joints forbid it, or loads do no work."""
-    return by_work(exact, rates) if _lawful(exact, rates) else None
+    lawful = _lawful_in_space if exact.axes == 3 else _lawful
+    return _by_work(exact, rates) if lawful(exact, rates) else None
 
 
-def by_work(exact: Exact, rates: list[list[int]]) -> Proof | None:
+def _by_work(exact: Exact, rates: list[list[int]]) -> Proof | None:
     """Prove that blocks fall by the work of the loads, of as many loads besides as it can.
 
     `rates`, (blocks,): A motion that no joint forbids: velocities and rotations.
@@ -272,6 +284,22 @@ def _lawful(exact: Exact, rates: list[list[int]]) -> bool:
                 v += sign * (dy + turn * (x - cx))
             opens, slips = u * p + v * q, abs(v * p - u * q)
             if opens < 0 or (slips and (mu is None or mu * slips > opens)):
+                return False
+    return True
+
+
+def _lawful_in_space(exact: Exact, rates: list[list[int]]) -> bool:
+    """Tell whether no point closes, or slips without opening."""
+    for joint in range(len(exact.sides)):
+        moved = exact.moving(joint, rates)
+        n, mu = exact.normals[joint], exact.friction[joint]
+        for point in exact.ends[joint] if moved else ():
+            way: list[int] = [0, 0, 0]
+            for rate, centre, sign in moved:
+                turned = zip(rate[:3], spun(rate[3:], apart(point, centre)), strict=True)
+                way = [w + sign * (v + u) for w, (v, u) in zip(way, turned, strict=True)]
+            opens, slips = along_and_across(way, n)
+            if opens < 0 or (slips and (mu is None or mu * mu * slips > opens * opens)):
                 return False
     return True
 

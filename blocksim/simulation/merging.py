@@ -204,10 +204,8 @@ class Merging:
             wrench = sign * unit * about(resultants[on], centres[sides[on]])
             np.add.at(acting, sides[on], wrench)
         # Of bodies, about their own centres.
-        moved, (x, y) = acting.copy(), self._offsets.T
-        moved[:, 2] += x * acting[:, 1] - y * acting[:, 0]
         total = np.zeros((len(self.assembly.blocks), PLANAR))
-        np.add.at(total, self.owner, moved)
+        np.add.at(total, self.owner, about(acting, -self._offsets))
         return acting, self.rates(total / (unit * self.assembly.masses))
 
 

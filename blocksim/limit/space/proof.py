@@ -20,16 +20,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import islice
-from typing import Any
 
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.limit.exact import NOTHING, SLACK, Exact, Number, Point, apart, moment, spun
+from blocksim.limit.exact import NOTHING, SLACK, Exact, Number, along_and_across, apart, moment
 from blocksim.limit.exact import whole_numbers as whole
 from blocksim.limit.handing import borne, fine, ways
-from blocksim.limit.proof import Proof, by_work
-from blocksim.limit.rational import as_bodies
+from blocksim.limit.proof import Proof
 from blocksim.limit.space.contacts import Contacts
 
 Force = list[Number]
@@ -63,25 +61,6 @@ def proof_of_rest(exact: Exact, contacts: Contacts, forces: Array) -> Proof | No
         ):  # fmt: skip
             return None
     return Proof(exact=exact, claim="stands", tolerance=tolerance, forces=found, unit=unit)
-
-
-def proof_of_fall(
-    exact: Exact, rates: Array, owner: Sequence[int] | None = None
-) -> Proof | None:
-    """Prove that a problem falls.
-
-    `rates`, (6 blocks,): Of a mechanism that opens points by more than round-off; velocities
-        in units of the size.
-    `owner`, (blocks,) sequence of int: Body of each block, of those that move as one, `SUPPORT`
-        at rest; by default each moves by itself.
-    Returns: None where these rates prove nothing.
-    """
-    size = exact.problem.assembly.size / float(exact.grain)
-    scaled = rates.reshape(-1, 6) * [*[size] * 3, 1.0, 1.0, 1.0]
-    _, parts = whole(scaled.ravel().tolist())
-    motion = [parts[at : at + 6] for at in range(0, len(parts), 6)]
-    motion = motion if owner is None else as_bodies(exact, motion, owner)
-    return by_work(exact, motion) if _lawful(exact, motion) else None
 
 
 def _stored(exact: Exact, contacts: Contacts, forces: Array) -> tuple[Forces, Fraction]:
@@ -171,29 +150,7 @@ def _within(exact: Exact, forces: Forces) -> bool:
     """Tell whether all forces press and lie within friction."""
     for n, mu, each in zip(exact.normals, exact.friction, forces, strict=True):
         for force in each:
-            along, across = _parts(force, n)
+            along, across = along_and_across(force, n)
             if along < 0 or (mu is not None and across > mu * mu * along * along):
                 return False
     return True
-
-
-def _lawful(exact: Exact, motion: list[list[int]]) -> bool:
-    """Tell whether no point closes, or slips without opening."""
-    for joint in range(len(exact.sides)):
-        moved = exact.moving(joint, motion)
-        n, mu = exact.normals[joint], exact.friction[joint]
-        for point in exact.ends[joint] if moved else ():
-            way: list[int] = [0, 0, 0]
-            for rate, centre, sign in moved:
-                turned = zip(rate[:3], spun(rate[3:], apart(point, centre)), strict=True)
-                way = [w + sign * (v + u) for w, (v, u) in zip(way, turned, strict=True)]
-            opens, slips = _parts(way, n)
-            if opens < 0 or (slips and (mu is None or mu * mu * slips > opens * opens)):
-                return False
-    return True
-
-
-def _parts(way: Sequence[Any], n: Point) -> tuple[Any, Any]:
-    """Return the part along a normal, and the square of that across, times its length."""
-    side = moment(way, n)
-    return sum(p * q for p, q in zip(way, n, strict=True)), sum(each * each for each in side)

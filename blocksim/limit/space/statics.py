@@ -18,12 +18,12 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.limit.capacity import Collapse
 from blocksim.limit.exact import Exact
-from blocksim.limit.proof import Proof
+from blocksim.limit.proof import Proof, proof_of_fall
 from blocksim.limit.resultants import Resultants
 from blocksim.limit.space.bodies import alike, opened_between
 from blocksim.limit.space.cones import Answer
 from blocksim.limit.space.contacts import Contacts, solved
-from blocksim.limit.space.proof import proof_of_fall, proof_of_rest
+from blocksim.limit.space.proof import proof_of_rest
 from blocksim.limit.space.resultants import resultants_in_space
 
 BALANCED = 1e-12
