@@ -277,4 +277,6 @@ def _joint_record(joint: Joint) -> dict[str, Any]:
     entry: dict[str, Any] = {"ends": [joint.inner.tolist(), joint.outer.tolist()]}
     if joint.across is not None:
         entry = {"ends": [joint.inner.tolist()], "normal": joint.across.tolist()}
-    return entry if joint.faces is None else {**entry, "faces": joint.faces.tolist()}
+    if joint.faces is not None:
+        entry["faces"] = joint.faces.tolist()
+    return entry
