@@ -59,10 +59,18 @@ def seen_at(film: Film, number: int, points: np.ndarray) -> np.ndarray:
     return np.column_stack([places[:, 0], film.height - places[:, 1]])
 
 
-def moment_of(film: Film, number: int):
+def time_of(film: Film, number: int) -> float:
     (stage,) = film._stages
     seconds = film._within((number / film.rate - 0.8) / film.slow)
-    return stage.at(seconds / math.sqrt(stage.assembly.size / 9.81))
+    return seconds / math.sqrt(stage.assembly.size / 9.81)
+
+
+def moment_of(film: Film, number: int):
+    return film._stages[0].at(time_of(film, number))
+
+
+def corners_of(film: Film, number: int) -> np.ndarray:
+    return film._stages[0].corners_at(time_of(film, number))
 
 
 def far_slider() -> Recording:
@@ -86,7 +94,7 @@ def test_every_block_is_in_every_frame(view: str, tmp_path: Path) -> None:
     low, high = 0.0, film.height - 0.0
     shares = []
     for number in range(0, film.count, 12):
-        corners = moment_of(film, number).corners.reshape(-1, 3)
+        corners = corners_of(film, number)
         places = seen_at(film, number, corners)
         assert (places > [0, low]).all()
         assert (places < [film.width, high]).all()
@@ -99,7 +107,7 @@ def test_every_block_is_in_every_frame(view: str, tmp_path: Path) -> None:
         render([run], tmp_path / "far.mp4", height=HEIGHT, slow=1)
         decoded = frames_of(tmp_path / "far.mp4")
         for number in (0, len(decoded) // 2, len(decoded) - 1):
-            centres = moment_of(film, number).corners.mean(axis=(1, 2))
+            centres = moment_of(film, number).places
             for x, y in seen_at(film, number, centres).round().astype(int).tolist():
                 stone = decoded[number][y, x].astype(int)
                 assert stone[0] > stone[2] + 8  # no paper, no ground
@@ -141,9 +149,9 @@ def test_frames_show_what_the_recording_says(kind: str, tmp_path: Path) -> None:
     seen: set[JointState] = set()
     for number in np.linspace(0, film.count - 1, 8).astype(int).tolist():
         moment, picture = moment_of(film, number), frames[number].astype(int)
-        places = seen_at(film, number, moment.corners.reshape(-1, 3))
+        places = seen_at(film, number, corners_of(film, number))
         assert ((places > 0) & (places < [film.width, film.height])).all()
-        for x, y in seen_at(film, number, moment.corners.mean(axis=(1, 2))).round().astype(int):
+        for x, y in seen_at(film, number, moment.places).round().astype(int):
             near_centre = picture[y - 3 : y + 4, x - 3 : x + 4].reshape(-1, 3)
             assert (near_centre[:, 0] > near_centre[:, 2] + 4).any()  # no paper, no ground
         seen |= joints_seen(film, number, picture, is_arch=stage.is_arch)
@@ -166,7 +174,8 @@ def joints_seen(
     found: set[JointState] = set()
     moment = moment_of(film, number)
     marks = drawn_marks(film, number)
-    for state, faces in zip(moment.joints, moment.faces, strict=True):
+    carried = film._stages[0].faces(moment.turns, moment.places)  # type: ignore[union-attr]
+    for state, faces in zip(moment.joints, carried, strict=True):
         along = faces[0][0] + np.linspace(0.3, 0.7, 9)[:, None] * (faces[0][1] - faces[0][0])
         if np.abs(faces[0] - faces[1]).max() <= 0.02:
             inner, outer = faces.mean(axis=0)
@@ -314,7 +323,7 @@ def test_side_by_side_begins_near_and_keeps_every_block() -> None:
     alone = Film([far_slider()], height=HEIGHT, slow=1)
 
     def wide(of: Film) -> float:
-        rest = of._stages[0].at(0.0).corners.reshape(-1, 3)
+        rest = of._stages[0].corners_at(0.0)
         return float(np.ptp(of._views[0].places(rest)[:, 0])) / of._panels[0].width
 
     assert wide(film) > 1.5 * wide(alone)
@@ -322,7 +331,7 @@ def test_side_by_side_begins_near_and_keeps_every_block() -> None:
         share = film.share(seconds)
         for stage, view, panel in zip(film._stages, film._views, film._panels, strict=True):
             corners = stage.corners_at(seconds / math.sqrt(stage.assembly.size / 9.81))
-            places = view.places(corners.reshape(-1, 3))
+            places = view.places(corners)
             places = view.centre + share * (places - view.centre)
             assert (places[:, 0] > panel.x).all()
             assert (places[:, 0] < panel.x + panel.width).all()
@@ -365,7 +374,7 @@ def test_a_film_ends_with_the_last_block_in_sight(tmp_path: Path) -> None:
     assert film.seconds < stage.end * math.sqrt(stage.assembly.size / 9.81)
     assert film.speed > 0
     last = film.count - 1
-    places = seen_at(film, last, moment_of(film, last).corners.reshape(-1, 3))
+    places = seen_at(film, last, corners_of(film, last))
     assert ((places > 0) & (places < [film.width, film.height])).all(axis=1).any()
     # The camera draws back no farther, and half a moment later nothing would be seen.
     assert film.share(film.seconds) == pytest.approx(FARTHEST, rel=0.01)

@@ -76,11 +76,9 @@ def test_joints_are_on_parts_of_faces() -> None:
     size = problem.assembly.size
     moment = stage.at(0.0)
     joints = problem.assembly.joints
-    for joint, pair in zip(joints, moment.faces, strict=True):
+    for joint, pair in zip(joints, stage.faces(moment.turns, moment.places), strict=True):
         for ends in pair:
-            np.testing.assert_allclose(
-                ends[:, :2] * size, [joint.inner, joint.outer], atol=1e-9
-            )
+            np.testing.assert_allclose(ends * size, [joint.inner, joint.outer], atol=1e-9)
     sliding = [JointState.SLIDES] * len(joints)
     pieces = stage.solids(1.0).at(moment.turns, moment.places, sliding)
     tone = colour(JOINTS[JointState.SLIDES])
@@ -98,19 +96,19 @@ def test_frames_show_blocks_in_their_colours_where_they_are(share: float) -> Non
     stage = Stage(lifted(problem, turn=0.3))
     frame = film.frame(round(film.rate * (0.8 + share * film.seconds * film.slow)))
     tones = np.round(255 * np.array(stone_tones(3))[:, :3])
-    moment = stage.at(share * stage.end)
-    for piece, block in enumerate(stage.owner):
-        outline = moment.corners[piece, 0, :, :2]
-        inside = np.unique(outline.round(9), axis=0).mean(axis=0)
-        assert np.abs(pixel(film, frame, inside) - tones[block]).max() <= 2
+    corners = stage.corners_at(share * stage.end)[:, :2]
+    # The two parts of the L, the triangle and the hexagon, near and far.
+    parts = np.split(corners, np.cumsum([4, 4, 4, 4, 3, 3, 6])[:7])[::2]
+    for part, tone in zip(parts, tones[[0, 0, 1, 2]], strict=True):
+        assert np.abs(pixel(film, frame, part.mean(axis=0)) - tone).max() <= 2
     # No seam where the two parts of the L meet: its colour all along.
-    seam = moment.corners[1, 0, [0, 1], :2]
+    seam = parts[1][[0, 1]]
     for part in (0.2, 0.4, 0.6, 0.8):
         point = seam[0] * (1 - part) + seam[1] * part
         assert np.abs(pixel(film, frame, point) - tones[0]).max() <= 4
-    # The outer side of both is an edge, the last side of a quadrilateral beside a hexagon.
-    for piece in (0, 1):
-        edge = moment.corners[piece, 0, [3, 0], :2].mean(axis=0)
+    # The outer side of both is an edge.
+    for part in parts[:2]:
+        edge = part[[3, 0]].mean(axis=0)
         around = [
             pixel(film, frame, edge + np.array([d, 0])) for d in np.linspace(-0.02, 0.02, 41)
         ]

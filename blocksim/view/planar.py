@@ -6,7 +6,16 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
-from blocksim.view.canvas import Label, Panel, Shape, colour, edge_width, mixed, stone_tones
+from blocksim.view.canvas import (
+    NOTHING,
+    Label,
+    Panel,
+    Shape,
+    colour,
+    edge_width,
+    mixed,
+    stone_tones,
+)
 from blocksim.view.drawing import words_of
 from blocksim.view.stage import Stage
 from blocksim.view.style import DASHES, GROUND, INK, PAPER, STONE, THRUST
@@ -42,7 +51,9 @@ class PlanarView:
         across = panel.x + panel.width / 2 - (aside + stage.middle) * self._scale
         self._origin = np.array([across, level - low[1] * self._scale])
         self._line = edge_width(self._scale, stage.grain)
-        self._tones = stone_tones(len(stage.assembly.blocks))
+        held = mixed(colour(GROUND), colour(PAPER), 0.35)
+        tones = enumerate(stone_tones(len(stage.assembly.blocks)))
+        self._tones = [held if at in stage.carriers else tone for at, tone in tones]
         self.still = self._surroundings()
 
     def scale_bar(
@@ -64,23 +75,14 @@ class PlanarView:
     def shapes(self, moment: Moment) -> list[Shape]:
         """Draw a moment."""
         edge = mixed(colour(STONE), colour(INK), 0.75)
-        parted = {at for at, _ in self._stage.rims}
-        owners: list[int] = self._stage.owner.tolist()
         blocks: list[Shape] = []
-        for block, (near, _) in zip(owners, moment.corners, strict=True):
-            points, tone = self.places(near), self._tones[block]
-            if block in self._stage.carriers:
-                tone = mixed(colour(GROUND), colour(PAPER), 0.35)
-            if block not in parted:
-                blocks.append(Shape(points, fill=tone, edge=edge, width=self._line))
-                continue
+        for at, outline, filled, whole in self._stage.outlines:
+            tone = self._tones[at]
             # Parts of one block have no edge between them: a hair of stone closes the seam.
-            blocks.append(Shape(points, fill=tone, edge=tone, width=SEAM))
-        for at, rim in self._stage.rims:
-            half = float(self._stage.assembly.depths[at]) / 2
-            near = np.pad(rim, ((0, 0), (0, 1)), constant_values=half) @ moment.turns[at].T
-            points = self.places(near + moment.places[at])
-            blocks.append(Shape(points, edge=edge, width=self._line))
+            line = (edge, self._line) if whole or not filled else (tone, SEAM)
+            turn, place = moment.turns[at, :2, :2], moment.places[at, :2]
+            points = self._to_pixels(outline @ turn.T + place)
+            blocks.append(Shape(points, tone if filled else NOTHING, *line))
         return [*blocks, *self._joints(moment), *self._thrust(moment)]
 
     def places(self, points: Array) -> Array:
@@ -121,12 +123,13 @@ class PlanarView:
         """Colour the faces of joints that take part, and mark their hinges by dots."""
         faces, dots = list[Shape](), list[Shape]()
         width = max(2.0, 2.6 * self._line)
-        for state, face in zip(moment.joints, moment.faces, strict=True):
+        carried = self._stage.faces(moment.turns, moment.places)
+        for state, face in zip(moment.joints, carried, strict=True):
             if state is JointState.CLOSED:
                 continue
             name = words_of(state, is_arch=self._stage.is_arch)[1]
             tone, dash = colour(name), DASHES.get(name, ())
-            places = [self._to_pixels(pair[:, :2]) for pair in face]
+            places = [self._to_pixels(pair) for pair in face]
             faces += [
                 Shape(pair, edge=tone, width=width, closed=False, dash=dash) for pair in places
             ]

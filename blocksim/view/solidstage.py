@@ -16,7 +16,7 @@ from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.limit.carried import Carried
 from blocksim.simulation.recording import Recording
 from blocksim.view.solidscene import Solids, moving_box, states_at, supports_of
-from blocksim.view.timeline import UPRIGHT, Moment, Timeline, upright
+from blocksim.view.timeline import UPRIGHT, Timeline
 
 FARTHEST = 1.75
 """Blocks are followed from the start up to this far beyond where they were at rest [size]."""
@@ -37,20 +37,17 @@ class SolidStage(Timeline):
     carried: Carried | None = None
 
     def __init__(self, recording: Recording[SpatialAssembly], near: float = 1.0) -> None:
-        super().__init__(recording)
         self.assembly = recording.assembly
-        size, blocks = self.assembly.size, self.assembly.blocks
-        corners = [
+        size = self.assembly.size
+        pieces = [
             (at, (hull.corners - block.centre) / size @ UPRIGHT.T)
-            for at, block in enumerate(blocks)
+            for at, block in enumerate(self.assembly.blocks)
             for hull in block.hulls
         ]
-        self._corners = np.concatenate([each for _, each in corners])[:, None]
-        self._owner = np.repeat([at for at, _ in corners], [len(each) for _, each in corners])
+        super().__init__(recording, near, pieces)
         low, high = moving_box(self.assembly) / size
         beyond = near * FARTHEST
-        times = recording.times[self.shown].tolist()
-        every = np.concatenate([self.corners_at(each) for each in times]) @ UPRIGHT
+        every = np.concatenate([self.corners_of(frame) for frame in self.shown]) @ UPRIGHT
         every = np.clip(every, low - beyond, high + beyond)
         ends = size * every.min(axis=0), size * every.max(axis=0)
         self.supports = supports_of(self.assembly, *ends)
@@ -74,14 +71,3 @@ class SolidStage(Timeline):
     def joints_at(self, poses: Array, time: float) -> tuple[JointState, ...]:  # noqa: ARG002
         """Tell what joints are seen to do at poses, (blocks, 6)."""
         return states_at(self.assembly, poses)
-
-    def at(self, time: float) -> Moment:
-        """Return where everything is at a time, between frames by even turns."""
-        poses = self.poses_at(time)
-        return self._moment(self.between(time)[0], poses, poses)
-
-    def corners_at(self, time: float) -> Array:
-        """Return the corners of a moment alone, (k, 3)."""
-        turns, places = upright(self.poses_at(time))
-        corners = self._corners @ turns[self._owner].swapaxes(1, 2)
-        return corners[:, 0] + places[self._owner]

@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from blocksim.ask.answer import SOUGHT
-from blocksim.blocks.assembly import Array, Assembly
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, classify
 from blocksim.blocks.outlines import distances
 from blocksim.blocks.space.extruded import lifted, prism, prisms
@@ -25,7 +26,7 @@ from blocksim.simulation.recording import Recording
 from blocksim.view.drawing import clipped, grain_of, rims
 from blocksim.view.solidscene import Solids
 from blocksim.view.thrustlines import is_chained, near_blocks, thrust_lines
-from blocksim.view.timeline import SEEN, Moment, Timeline, upright
+from blocksim.view.timeline import SEEN, Timeline, upright
 
 TOUCHING = 0.02
 """Height of a corner over the ground below which its block lies on it [r]."""
@@ -43,67 +44,39 @@ DIGITS = 9
 """Decimals of a line of thrust [size]."""
 
 
-class Placing:
-    """Convex pieces of blocks of the plane, and joints, carried by poses.
+class Outline(NamedTuple):
+    """A part of a block as it is seen from the front, or the rim of a block of several parts.
 
-    It has:
-    `owner`, (pieces,): The block that each piece belongs to.
-    `outlines`, (pieces, sides, 2): Of the pieces, from the centres of their blocks; what has
-        fewer corners repeats its last one.
+    `points`, (k, 2): From the centre of the block as built [size].
+    `whole`: Whether it is all of the block.
     """
 
-    def __init__(self, assembly: Assembly) -> None:
-        self._assembly = assembly
-        pieces = [
-            (index, (part - block.centre) / assembly.size)
-            for index, block in enumerate(assembly.blocks)
-            for part in block.polygons
-        ]
-        self.owner = np.array([index for index, _ in pieces])
-        sides = max(len(each) for _, each in pieces)
-        self.outlines = np.array(
-            [np.pad(each, ((0, sides - len(each)), (0, 0)), "edge") for _, each in pieces]
-        )
-        self._half = assembly.depths[self.owner] / 2
-
-    def corners(self, poses: Array) -> Array:
-        """Return the corners in space at poses, (pieces, 2, sides, 3)."""
-        turns, centres = upright(poses)
-        half = np.broadcast_to(self._half[:, None, None], (*self.outlines.shape[:2], 1))
-        near = np.concatenate([self.outlines, half], axis=-1)
-        local = np.stack([near, near * [1, 1, -1]], axis=1)
-        owner = self.owner
-        return centres[owner][:, None, None] + local @ turns[owner][:, None].swapaxes(2, 3)
-
-    def faces(self, poses: Array) -> Array:
-        """Return the ends of joints in space, as the blocks on both sides carry them."""
-        assembly = self._assembly
-        turns, centres = upright(poses)
-        # The support comes last, as index -1 says: it stays.
-        centres = np.vstack([centres, np.zeros(3)])
-        turns = np.concatenate([turns, np.eye(3)[None]])
-        sides = assembly.sides.T
-        local = np.zeros((*sides.shape, 2, 3))
-        local[..., :2] = assembly.joint_arms.swapaxes(0, 1)
-        return centres[sides][:, :, None] + local @ turns[sides].swapaxes(2, 3)
+    block: int
+    points: Array
+    filled: bool
+    whole: bool
 
 
 class Stage(Timeline):
     """Everything that is drawn of a recording of the plane, whatever the view.
 
-    `near` is the share of the usual room beside the blocks that is shown from the start. It
-    knows convex outlines of footings, cut off far from the blocks, the level of the ground,
-    which block owns each piece, the distance from block to block (`grain`), and their middle.
+    It knows convex outlines of footings, cut off far from the blocks, the level of the ground,
+    the distance from block to block (`grain`), and their middle.
     """
 
     eye = math.radians(-32.0), math.radians(14.0)
     """Where it is seen from in perspective: turned about the vertical, and raised."""
 
     def __init__(self, recording: Recording, near: float = 1.0) -> None:
-        super().__init__(recording)
-        self._near = near
         self.assembly = recording.assembly
-        size = self.assembly.size
+        size, half = self.assembly.size, self.assembly.depths / 2
+        faces = [
+            (block, np.pad(points, ((0, 0), (0, 1)), constant_values=side * half[block]))
+            for block, points, filled, _ in self.outlines
+            for side in (1.0, -1.0)
+            if filled
+        ]
+        super().__init__(recording, near, faces)
         self.depth = float(self.assembly.depths.max())
         self.is_arch = recording.problem.is_arch
         rest = np.concatenate([block.vertices for block in self.assembly.blocks]) / size
@@ -116,8 +89,6 @@ class Stage(Timeline):
             tops = [part[:, 1].max() for each in self._fixed for part in each.polygons]
             self.ground, self._fixed = float(max(tops)) / size, ()
         self.footings = self._standing()
-        self._placing = Placing(self.assembly)
-        self.owner = self._placing.owner
         self.grain = grain_of(self.assembly) / size
 
     def solids(self, line: float) -> Solids:
@@ -186,9 +157,8 @@ class Stage(Timeline):
         footings = np.concatenate([*self.footings, [[self.middle, self.ground]]])
         half = self.depth / 2
         solid = [np.pad(footings, ((0, 0), (0, 1)), constant_values=z) for z in (-half, half)]
-        first, *shown = lifted(self.recording.poses[[0, *self.shown]])
-        rest = np.concatenate([self._placing.corners(first).reshape(-1, 3), *solid])
-        moved = np.concatenate([self._placing.corners(each) for each in shown]).reshape(-1, 3)
+        rest = np.concatenate([self.corners_of(0), *solid])
+        moved = np.concatenate([self.corners_of(frame) for frame in self.shown])
         low, high = rest.min(axis=0), rest.max(axis=0)
         bounded = np.clip(
             moved,
@@ -198,28 +168,34 @@ class Stage(Timeline):
         return np.concatenate([rest, bounded])
 
     @cached_property
-    def rims(self) -> list[tuple[int, Array]]:
-        """Rims of blocks that have several pieces, from their centres, with the block."""
-        blocks = enumerate(self.assembly.blocks)
-        return [
-            (at, (rim - block.centre) / self.assembly.size)
-            for at, block in blocks
-            if len(block.polygons) > 1
-            for rim in rims(block.polygons)
-        ]
+    def outlines(self) -> list[Outline]:
+        """Parts of all blocks, then the rims of those that have several."""
+        found = list[Outline]()
+        for filled in (True, False):
+            for at, block in enumerate(self.assembly.blocks):
+                whole = len(block.polygons) == 1
+                parts = block.polygons if filled else () if whole else rims(block.polygons)
+                found += [
+                    Outline(at, (part - block.centre) / self.assembly.size, filled, whole)
+                    for part in parts
+                ]
+        return found
 
-    def at(self, time: float) -> Moment:
-        """Return where everything is at a time, between frames by interpolation."""
-        time, earlier, later, share = self.between(time)
+    def faces(self, turns: Array, places: Array) -> Array:
+        """Return the ends of joints as the blocks on both sides carry them.
+
+        `turns`, `places`: Of a `Moment`.
+        Returns: (joints, 2 sides, 2 ends, 2).
+        """
+        # The support comes last, as index -1 says: it stays.
+        centres = np.vstack([places[:, :2], np.zeros(2)])
+        turns = np.concatenate([turns[:, :2, :2], np.eye(2)[None]])
+        sides, arms = self.assembly.sides.T, self.assembly.joint_arms.swapaxes(0, 1)
+        return centres[sides][:, :, None] + arms @ turns[sides].swapaxes(2, 3)
+
+    def _looked_at(self, poses: Array, earlier: int, later: int, share: float) -> Array:  # noqa: ARG002
         one, two = self.recording.poses[earlier], self.recording.poses[later]
-        poses = self.poses_at(time)
-        return self._moment(time, poses, one + (two - one) * share)._replace(
-            corners=self._placing.corners(poses), faces=self._placing.faces(poses)
-        )
-
-    def corners_at(self, time: float) -> Array:
-        """Return the corners of a moment alone, which cost little."""
-        return self._placing.corners(self.poses_at(time))
+        return one + (two - one) * share
 
     def joints_at(self, poses: Array, time: float) -> tuple[JointState, ...]:
         """Tell what joints are seen to do at poses, (blocks, 3), and their time."""
@@ -245,7 +221,7 @@ class Stage(Timeline):
             time = float(self.recording.times[frame])
             poses = self.recording.poses[frame]
             seen = classify(self.assembly, poses, least=SEEN)
-            faces = self._placing.faces(lifted(poses))[..., :2]
+            faces = self.faces(*upright(lifted(poses)))
             # Turned far, blocks may have left each other though neither end seems open.
             apart = np.array([joint.state is JointState.OPEN for joint in seen])
             apart |= distances(faces, faces[:, ::-1, None]).min(axis=(1, 2)) > SEEN
@@ -253,9 +229,8 @@ class Stage(Timeline):
             held = np.zeros(blocks + 1, dtype=bool)
             for side in (before, after):
                 held[side[parted > time]] = True
-            bottoms = self._placing.corners(lifted(poses))[..., 1].min(axis=(1, 2))
             lowest = np.full(blocks, np.inf)
-            np.minimum.at(lowest, self._placing.owner, bottoms)
+            np.minimum.at(lowest, self._owner, self.corners_of(frame)[:, 1])
             loose = ~held[:blocks] | (lowest < self.ground + TOUCHING)
             rubble[:blocks] = np.minimum(rubble[:blocks], np.where(loose, time, np.inf))
         return parted, np.minimum(rubble[before], rubble[after])

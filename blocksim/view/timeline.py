@@ -7,6 +7,7 @@ sqrt(size/g).
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -31,9 +32,6 @@ SEEN = 4e-3
 """Turn or slip of a joint from which on it is coloured [r]: a pixel of a film."""
 
 
-NOWHERE = np.empty(0)
-
-
 class Moment(NamedTuple):
     """Blocks and joints at one time, y upwards, z towards the viewer.
 
@@ -41,10 +39,6 @@ class Moment(NamedTuple):
         and their centres.
     `statics`: 1 while the line of thrust of the arch at rest still says something, falling to
         0.
-    `corners`, (pieces, 2, sides, 3): In the plane, of the near and the far face of each convex
-        piece of a block.
-    `faces`, (joints, 2, 2, 3): In the plane, both ends of each joint as the blocks before and
-        after it have carried them.
     """
 
     time: float
@@ -52,8 +46,6 @@ class Moment(NamedTuple):
     places: Array
     joints: tuple[JointState, ...]
     statics: float
-    corners: Array = NOWHERE
-    faces: Array = NOWHERE
 
 
 def poses_between(recording: Recording[Any], earlier: int, later: int, share: float) -> Array:
@@ -80,15 +72,43 @@ def upright(poses: Array) -> tuple[Array, Array]:
 
 
 class Timeline(ABC):
-    """Times of a recording, and what is known of them."""
+    """Times of a recording, what is known of them, and where blocks are.
 
-    def __init__(self, recording: Recording[Any]) -> None:
-        self.recording = recording
+    `near`: Share of the usual room beside the blocks that is shown from the start.
+    `pieces`: Each convex piece of a block: the block, and corners from its centre as built,
+        (k, 3) [size], y upwards.
+    """
 
-    def _moment(self, time: float, poses: Array, looked: Array) -> Moment:
-        """Return what there is of blocks at poses, of which joints are looked at by others."""
-        joints = self.joints_at(looked, time)
+    def __init__(
+        self, recording: Recording[Any], near: float, pieces: Sequence[tuple[int, Array]]
+    ) -> None:
+        self.recording, self._near = recording, near
+        self._corners = np.concatenate([each for _, each in pieces])[:, None]
+        self._owner = np.repeat([at for at, _ in pieces], [len(each) for _, each in pieces])
+
+    def at(self, time: float) -> Moment:
+        """Return where everything is at a time, between frames by even turns."""
+        poses = self.poses_at(time)
+        time, *around = self.between(time)
+        joints = self.joints_at(self._looked_at(poses, *around), time)
         return Moment(time, *upright(poses), joints, self.statics_at(time))
+
+    def _looked_at(self, poses: Array, earlier: int, later: int, share: float) -> Array:  # noqa: ARG002
+        """Return poses as joints are looked at, at a share of the way between two frames."""
+        return poses
+
+    def corners_at(self, time: float) -> Array:
+        """Return the corners of all pieces at a time, (corners, 3)."""
+        return self._placed(self.poses_at(time))
+
+    def _placed(self, poses: Array) -> Array:
+        turns, places = upright(poses)
+        corners = self._corners @ turns[self._owner].swapaxes(1, 2)
+        return corners[:, 0] + places[self._owner]
+
+    def corners_of(self, frame: int) -> Array:
+        """Return the corners of all pieces in a frame, (corners, 3)."""
+        return self._placed(poses_between(self.recording, frame, frame, 0.0))
 
     def point_at(self, moment: Moment, block: int, arm: Array) -> Array:
         """Return the place of a point of a block, given from its centre as built [size]."""
