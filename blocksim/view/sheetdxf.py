@@ -8,14 +8,14 @@ from __future__ import annotations
 import io
 import math
 import re
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.closing import marked_gaps
 from blocksim.blocks.joints import JointState
-from blocksim.blocks.road import profile_of, road_of
+from blocksim.blocks.road import road_of
 from blocksim.common.checks import require
 from blocksim.common.dates import is_dated, present
 from blocksim.common.later import require_library
@@ -26,7 +26,7 @@ from blocksim.view.arrows import FAINT, acting_on
 from blocksim.view.dimensions import Length, dimensions_of
 from blocksim.view.drawing import rims
 from blocksim.view.sheet import A4, Sheet, scale_for, scale_words
-from blocksim.view.structure import fill_outlines
+from blocksim.view.structure import fill_outlines, road_level
 
 LAYERS = {
     "blocks": (7, "CONTINUOUS", 35),
@@ -92,89 +92,97 @@ def _draw(document: Any, sheet: Sheet) -> None:
     document.header["$MEASUREMENT"] = 1
     for name, (colour, dashes, width) in LAYERS.items():
         document.layers.add(name, color=colour, linetype=dashes, lineweight=width)
-    space: Any = document.modelspace()
-    shown = _bodies(space, sheet)
-    for line in sheet.lines:
-        for path in line.paths:
-            _polyline(space, path, f"thrust-{line.name}", close=False)
-    span = np.ptp(shown, axis=0)
-    paper = np.array([A4[0].width, A4[0].height])
-    scale = scale_for(span, ROOM * paper)
+    blocks, supports = _bodies(sheet)
+    shown = np.concatenate([*blocks, *(part for parts in sheet.supports for part in parts)])
+    scale = scale_for(np.ptp(shown, axis=0), ROOM * [A4[0].width, A4[0].height])
     # Dashes are of paper.
     document.header["$LTSCALE"] = DASH * scale / 1e3
-    _numbers(space, sheet, scale)
-    _forces(space, sheet, scale)
-    _road(space, sheet, shown)
-    _states(space, sheet, scale)
-    _gaps(space, sheet, scale)
-    _dimensions(space, sheet, shown, scale)
-    foot = _words(space, sheet, shown, scale)
-    _title(space, sheet, float(shown[:, 0].max()), foot, scale)
-
-
-def _bodies(space: Any, sheet: Sheet) -> Array:
-    """Draw blocks, supports and joints, and return corners of all of them."""
-    problem = sheet.problem
-    corners = [
-        _named(block.polygons, f"block {block.name or index}")
-        for index, block in enumerate(problem.assembly.blocks)
-    ]
-    for each in corners:
-        _polyline(space, each, "blocks", close=True)
-    bodies = [
-        _named(support.polygons, f"support {support.name or index}")
-        for index, support in enumerate(problem.assembly.supports)
-    ]
-    known = len(bodies)
-    bodies += [rim for parts in sheet.supports[known:] for rim in rims(parts)]
-    for each in bodies:
-        _polyline(space, each, "supports", close=True)
-    for joint in problem.assembly.joints:
+    drawing = _Drawing(document.modelspace(), scale / 1e3)
+    for layer, rings in (("blocks", blocks), ("supports", supports)):
+        for each in rings:
+            drawing.polyline(each, layer)
+    for joint in sheet.problem.assembly.joints:
         if not joint.is_corner:
-            space.add_line(joint.inner, joint.outer, dxfattribs={"layer": "joints"})
-    return np.concatenate([*corners, *(part for parts in sheet.supports for part in parts)])
+            drawing.line(joint.inner, joint.outer, "joints")
+    for line in sheet.lines:
+        for path in line.paths:
+            drawing.polyline(path, f"thrust-{line.name}", close=False)
+    _numbers(drawing, sheet)
+    _forces(drawing, sheet)
+    _road(drawing, sheet, shown)
+    _states(drawing, sheet)
+    _gaps(drawing, sheet)
+    _dimensions(drawing, sheet, shown)
+    foot = _words(drawing, sheet, shown)
+    _title(drawing, sheet, float(shown[:, 0].max()), foot)
 
 
-def _named(polygons: tuple[Array, ...], name: str) -> Array:
+class _Drawing(NamedTuple):
+    """The space in which all is drawn, in metres, and a millimetre on paper [m]."""
+
+    space: Any
+    mm: float
+
+    def line(self, start: Any, end: Any, layer: str) -> None:
+        """Draw a line."""
+        self.space.add_line(tuple(start), tuple(end), dxfattribs={"layer": layer})
+
+    def polyline(self, points: Array, layer: str, *, close: bool = True) -> None:
+        """Draw a polygon, or an open line."""
+        self.space.add_lwpolyline(points.tolist(), close=close, dxfattribs={"layer": layer})
+
+    def text(self, words: str, at: Any, layer: str, height: float, align: str = "LEFT") -> None:
+        """Write words of a height [m], by the name of an alignment."""
+        from ezdxf.enums import TextEntityAlignment
+
+        text = self.space.add_text(_literal(words), height=height, dxfattribs={"layer": layer})
+        text.set_placement(tuple(at), align=TextEntityAlignment[align])
+
+
+def _bodies(sheet: Sheet) -> tuple[list[Array], list[Array]]:
+    """Return outlines of blocks, and of supports."""
+    assembly = sheet.problem.assembly
+    blocks, supports = (
+        [_outline(body.polygons, f"{kind} {body.name or at}") for at, body in enumerate(bodies)]
+        for kind, bodies in (("block", assembly.blocks), ("support", assembly.supports))
+    )
+    unknown = sheet.supports[len(supports) :]
+    return blocks, supports + [rim for parts in unknown for rim in rims(parts)]
+
+
+def _outline(polygons: tuple[Array, ...], name: str) -> Array:
     found = rims(polygons)
     allowed = "without holes, and one body: polylines of DXF have one outline"
     require(len(found) == 1, name, f"{len(polygons)} polygons", allowed)
     return found[0]
 
 
-def _polyline(space: Any, points: Array, layer: str, *, close: bool) -> None:
-    space.add_lwpolyline(points.tolist(), close=close, dxfattribs={"layer": layer})
-
-
-def _states(space: Any, sheet: Sheet, scale: float) -> None:
+def _states(drawing: _Drawing, sheet: Sheet) -> None:
     """Draw joints that take part, and circles where they turn."""
-    layer = {"layer": "mechanism"}
-    states = sheet.joint_states or ()
+    layer, states = "mechanism", sheet.joint_states or ()
     for joint, state in zip(sheet.problem.assembly.joints, states, strict=False):
         if state is JointState.CLOSED:
             continue
         ends = (joint.inner, joint.outer)
         if not joint.is_corner:
-            space.add_line(*ends, dxfattribs=layer)
+            drawing.line(*ends, layer)
         if state.hinge is not None:
-            space.add_circle(ends[state.hinge], HINGE * scale / 1e3, dxfattribs=layer)
+            attributes = {"layer": layer}
+            drawing.space.add_circle(ends[state.hinge], HINGE * drawing.mm, attributes)
 
 
-def _gaps(space: Any, sheet: Sheet, scale: float) -> None:
+def _gaps(drawing: _Drawing, sheet: Sheet) -> None:
     """Draw joints at which a gap or an overlap of the drawing is closed, with its size."""
-    layer, mm = {"layer": "gaps"}, scale / 1e3
     for index, gap in marked_gaps(sheet.problem.assembly).items():
         joint = sheet.problem.assembly.joints[index]
         if not joint.is_corner:
-            space.add_line(joint.inner, joint.outer, dxfattribs=layer)
-        size = space.add_text(
-            f"{1000 * gap:+.3g} mm", height=LETTERS * mm / 2, dxfattribs=layer
-        )
-        size.set_placement(tuple((joint.inner + joint.outer) / 2))
+            drawing.line(joint.inner, joint.outer, "gaps")
+        middle = (joint.inner + joint.outer) / 2
+        drawing.text(f"{1000 * gap:+.3g} mm", middle, "gaps", LETTERS * drawing.mm / 2)
 
 
-def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
-    height = LETTERS * scale / 1e3
+def _dimensions(drawing: _Drawing, sheet: Sheet, shown: Array) -> None:
+    height = LETTERS * drawing.mm
     sizes = {
         "dimtxt": height,
         "dimasz": height,
@@ -188,30 +196,26 @@ def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
         "dimlfac": 1.0,
     }
     layer = {"layer": "dimensions"}
-    for each in dimensions_of(sheet.problem, shown, scale):
+    for each in dimensions_of(sheet.problem, shown, 1e3 * drawing.mm):
         if isinstance(each, Length):
-            note = f" ({each.note})" if each.note else ""
-            beside = each.what == "thickness"
             # The rise has the middle of the span.
             aside = each.ends[0] + 0.25 * (each.ends[1] - each.ends[0]) + [0.0, height]
+            places = {"thickness": each.ends[1] + each.along * 20 * drawing.mm, "span": aside}
+            place = places.get(each.what)
             turn = math.degrees(math.atan2(each.along[1], each.along[0]))
-            made = space.add_linear_dim(
+            made = drawing.space.add_linear_dim(
                 base=tuple(each.at),
                 p1=tuple(each.ends[0]),
                 p2=tuple(each.ends[1]),
                 # Words that stand on their heads are turned round.
                 angle=turn - 180 if turn > 90 else turn,
-                location=tuple(each.ends[1] + each.along * 20 * scale / 1e3)
-                if beside
-                else tuple(aside)
-                if each.what == "span"
-                else None,
-                text=f"{each.what} <> m{note}",
+                location=None if place is None else tuple(place),
+                text=f"{each.what} <> m" + (f" ({each.note})" if each.note else ""),
                 override=sizes,
                 dxfattribs=layer,
             )
         else:
-            made = space.add_angular_dim_3p(
+            made = drawing.space.add_angular_dim_3p(
                 base=tuple(each.point(0.5)),
                 center=tuple(each.centre),
                 p1=tuple(each.point(1.0, each.reach)),
@@ -223,53 +227,42 @@ def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
         made.render()
 
 
-def _words(space: Any, sheet: Sheet, shown: Array, scale: float) -> float:
+def _words(drawing: _Drawing, sheet: Sheet, shown: Array) -> float:
     """Write title and facts below, and forces where they act. Return how far down."""
-    from ezdxf.enums import TextEntityAlignment
-
-    mm = scale / 1e3
-    unit, layer = sheet.unit, {"layer": "text"}
-
-    def write(words: str, at: Array, height: float = LETTERS, *, before: bool = False) -> None:
-        text = space.add_text(_literal(words), height=height * mm, dxfattribs=layer)
-        text.set_placement(tuple(at), align=TextEntityAlignment.RIGHT if before else None)
-
+    mm, letters, layer = drawing.mm, LETTERS * drawing.mm, "text"
+    left, low = shown.min(axis=0).tolist()
     for each in sheet.reactions:
-        borne = in_world(sheet.problem, each.force)
-        across, up = (unit.words(float(part)) for part in borne)
+        across, up = map(sheet.unit.words, in_world(sheet.problem, each.force).tolist())
         # Left of an arrow that comes from the left or from below, right of another.
         side = -22.0 if each.force[0] >= 0 else 8.0
-        below = np.array([each.point[0] + side * mm, float(shown[:, 1].min()) - 5 * mm])
-        write(f"H = {across}", below)
-        write(f"V = {up}", below - [0, 4 * mm])
+        for line, said in ((5, f"H = {across}"), (9, f"V = {up}")):
+            at = each.point[0] + side * mm, low - line * mm
+            drawing.text(said, at, layer, letters)
     if sheet.thrust is not None:
         index, words = sheet.thrust
-        joint = sheet.problem.assembly.joints[index]
-        at = np.array([joint.outer[0] - mm, float(shown[:, 1].max()) + 2 * mm])
-        write(words, at, before=True)
-    at = np.array([float(shown[:, 0].min()), float(shown[:, 1].min()) - 22 * mm])
-    write(sheet.title, at, 2 * LETTERS)
+        outer = sheet.problem.assembly.joints[index].outer[0]
+        at = outer - mm, float(shown[:, 1].max()) + 2 * mm
+        drawing.text(words, at, layer, letters, "RIGHT")
+    foot = low - 22 * mm
+    drawing.text(sheet.title, (left, foot), layer, 2 * letters)
     said = [*sheet.facts, *(f"layer thrust-{line.name}: {line.words}" for line in sheet.lines)]
     for line in said:
-        at = at - [0, 5 * mm]
-        write(line, at)
-    return float(at[1])
+        foot -= 5 * mm
+        drawing.text(line, (left, foot), layer, letters)
+    return foot
 
 
-def _numbers(space: Any, sheet: Sheet, scale: float) -> None:
+def _numbers(drawing: _Drawing, sheet: Sheet) -> None:
     """Write names of blocks on them, smaller where they have less room."""
-    from ezdxf.enums import TextEntityAlignment
-
     for index, block in enumerate(sheet.problem.assembly.blocks):
-        name = _literal(block.name or str(index))
+        name = block.name or str(index)
         sides = np.ptp(block.vertices, axis=0)
         room = min(float(sides.min()) / 3, float(sides.max()) / len(name))
-        height = min(LETTERS * scale / 1e3, room)
-        text = space.add_text(name, height=height, dxfattribs={"layer": "numbers"})
-        text.set_placement(tuple(block.centre), align=TextEntityAlignment.MIDDLE_CENTER)
+        height = min(LETTERS * drawing.mm, room)
+        drawing.text(name, block.centre, "numbers", height, "MIDDLE_CENTER")
 
 
-def _forces(space: Any, sheet: Sheet, scale: float) -> None:
+def _forces(drawing: _Drawing, sheet: Sheet) -> None:
     """Draw loads and reactions as arrows that end where they act, those of a kind to scale."""
     arrows: dict[str, list[tuple[Array, Array]]] = {
         "reactions": [(each.point, each.force) for each in sheet.reactions]
@@ -282,47 +275,43 @@ def _forces(space: Any, sheet: Sheet, scale: float) -> None:
             size = float(np.hypot(*force))
             if size <= FAINT * largest:
                 continue
-            way = force / size
-            mm = scale / 1e3
-            tail = tip - way * max(LEAST, ARROW * size / largest) * mm
-            back, across = tip - way * HEAD * mm, np.array([-way[1], way[0]]) * HEAD / 3 * mm
-            space.add_line(tuple(tail), tuple(back), dxfattribs={"layer": layer})
+            way = force / size * drawing.mm
+            tail, back = tip - way * max(LEAST, ARROW * size / largest), tip - way * HEAD
+            across = np.array([-way[1], way[0]]) * HEAD / 3
+            drawing.line(tail, back, layer)
             head = [tuple(tip), tuple(back + across), tuple(back - across)]
-            space.add_solid(head, dxfattribs={"layer": layer})
+            drawing.space.add_solid(head, dxfattribs={"layer": layer})
 
 
-def _road(space: Any, sheet: Sheet, shown: Array) -> None:
+def _road(drawing: _Drawing, sheet: Sheet, shown: Array) -> None:
     """Draw fill, and the level of the road with where x is 0 on it."""
-    problem, level = sheet.problem, road_of(sheet.problem)
-    if level is None and not problem.road:
+    problem, layer = sheet.problem, "road"
+    if road_of(problem) is None and not problem.road:
         return
     for area, is_backing in fill_outlines(problem):
-        _polyline(space, area, "backing" if is_backing else "fill", close=True)
-    top = float(profile_of(problem.assembly).ends[..., 1].max()) if level is None else level
-    low, high = float(shown[:, 0].min()), float(shown[:, 0].max())
-    layer = {"layer": "road"}
-    space.add_line((low, top), (high, top), dxfattribs=layer)
-    space.add_point((0.0, top), dxfattribs=layer)
-    height = (high - low) / 80
-    text = space.add_text("x = 0", height=height, dxfattribs=layer)
-    text.set_placement((0.0, top + height / 2))
+        drawing.polyline(area, "backing" if is_backing else "fill")
+    top, (low, high) = road_level(problem), (shown[:, 0].min(), shown[:, 0].max())
+    drawing.line((low, top), (high, top), layer)
+    drawing.space.add_point((0.0, top), dxfattribs={"layer": layer})
+    height = float(high - low) / 80
+    drawing.text("x = 0", (0.0, top + height / 2), layer, height)
 
 
-def _title(space: Any, sheet: Sheet, right: float, foot: float, scale: float) -> None:
+def _title(drawing: _Drawing, sheet: Sheet, right: float, foot: float) -> None:
     """Draw a title block below the words, to the right, a line for each thing that it says."""
-    said = [*sheet.titles.said, ("drawing", sheet.title), ("scale", scale_words(scale)),
+    mm, layer = drawing.mm, "title"
+    said = [*sheet.titles.said, ("drawing", sheet.title), ("scale", scale_words(1e3 * mm)),
             ("made by", f"blocksim {__version__}")]  # fmt: skip
-    mm, layer = scale / 1e3, {"layer": "title"}
     wide, high = TITLED * mm
     top, left, split = foot - high, right - wide, right - 0.75 * wide
     for row, (name, value) in enumerate(said):
         level = top - row * high
         corners = [(left, level), (right, level), (right, level - high), (left, level - high)]
-        space.add_lwpolyline(corners, close=True, dxfattribs=layer)
+        drawing.polyline(np.array(corners), layer)
         for at, words in ((left, name), (split, value)):
-            text = space.add_text(_literal(words)[:60], height=LETTERS * mm, dxfattribs=layer)
-            text.set_placement((at + 2 * mm, level - 0.7 * high))
-    space.add_line((split, top), (split, top - len(said) * high), dxfattribs=layer)
+            place = at + 2 * mm, level - 0.7 * high
+            drawing.text(words[:60], place, layer, LETTERS * mm)
+    drawing.line((split, top), (split, top - len(said) * high), layer)
 
 
 def _literal(words: str) -> str:

@@ -18,7 +18,6 @@ from matplotlib.transforms import Bbox
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.outlines import signed_area
-from blocksim.blocks.road import profile_of, road_of
 from blocksim.common.version import __version__
 from blocksim.common.words import printable
 from blocksim.limit import in_world
@@ -27,7 +26,12 @@ from blocksim.view.dimensions import Angle, Length, dimensions_of, half_angle_of
 from blocksim.view.drawing import literal, new_figure, round_length
 from blocksim.view.sheet import Sheet, scale_words
 from blocksim.view.sheetlayout import COLUMNS, LINE, MARGIN, TITLE, Layout, layout_of, wrapped
-from blocksim.view.structure import draw_blocks, draw_structure, draw_supports
+from blocksim.view.structure import (
+    draw_blocks,
+    draw_structure,
+    draw_supports,
+    road_level,
+)
 from blocksim.view.style import FONT, INK, QUIET, THRUST
 from blocksim.view.thrustlines import force_sizes
 
@@ -239,8 +243,7 @@ def _draw_numbers(axes: Axes, sheet: Sheet, layout: Layout) -> None:
         axes.text(x, y, literal(name), ha="center", va="center", fontsize=NUMBERED,
                   color=QUIET, zorder=7, gid=f"number-{index}", clip_on=True)  # fmt: skip
     if problem.road and not sheet.pressed:
-        level = road_of(problem)
-        top = float(profile_of(problem.assembly).ends[..., 1].max()) if level is None else level
+        top = road_level(problem)
         axes.plot(0.0, top, marker=7, ms=5, color=INK, zorder=9, gid="origin")
         layout.write(axes, np.array([0.0, top + 2 * mm]), "x = 0", (0.0, 1.0), ha="center",
                      va="bottom", fontsize=SMALLER, gid="origin-words")  # fmt: skip

@@ -124,6 +124,12 @@ def _strip(joint: Joint, deep: float) -> Array:
     return np.array([near[0], near[1], near[1] + out, near[0] + out])
 
 
+def road_level(problem: Problem) -> float:
+    """Return the level at which places on the road are told [m]: its own, or of what is top."""
+    road = road_of(problem)
+    return float(profile_of(problem.assembly).ends[..., 1].max()) if road is None else road
+
+
 def fill_outlines(problem: Problem) -> list[tuple[Array, bool]]:
     """Return outlines of fill and backing (true) below the road [m], cut off at supports."""
     road = road_of(problem)
