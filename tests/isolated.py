@@ -36,8 +36,8 @@ ROOM = 8 << 30
 """Most that it is given."""
 LIBRARIES = (
     "blocksim.cli.app", "blocksim.cli.asking", "blocksim.cli.commands",
-    "blocksim.cli.converting", "blocksim.cli.drawing", "blocksim.cli.mapping",
-    "blocksim.cli.reporting", "blocksim.cli.structures", "blocksim.cli.sweeping",
+    "blocksim.cli.converting", "blocksim.cli.rendering", "blocksim.cli.mapping",
+    "blocksim.cli.sweeping",
     "blocksim.kinds.files", "blocksim.view.video", "clarabel", "ezdxf", "highspy", "pymunk",
     "scipy.optimize",
 )  # fmt: skip

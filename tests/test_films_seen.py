@@ -18,10 +18,10 @@ from running import inside
 import blocksim
 from blocksim import JointState, Recording
 from blocksim.blocks.acting import push_on_all
+from blocksim.view.camera import FARTHEST, zoomed
 from blocksim.view.canvas import colour
 from blocksim.view.drawing import words_of
 from blocksim.view.film import Film
-from blocksim.view.following import FARTHEST, zoomed
 from blocksim.view.style import DEAD, JOINTS, LIVE
 from blocksim.view.video import render, to_bytes
 

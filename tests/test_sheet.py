@@ -17,12 +17,12 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from blocksim import Arch, CircularArch, Problem, check, load_structure, structure_of
+from blocksim.view.dimensions import force_unit
 from blocksim.view.drawing import save_figure
 from blocksim.view.sheet import Sheet, answer_sheet
 from blocksim.view.sheetdxf import LAYERS, write_dxf
 from blocksim.view.sheetfigure import sheet_figure
 from blocksim.view.thrustlines import is_chained
-from blocksim.view.units import force_unit
 
 SPAN, RISE, THICK = 8.0, 3.0, 0.45
 INNER = (SPAN**2 / 4 + RISE**2) / (2 * RISE)

@@ -260,7 +260,7 @@ def test_a_table_of_a_long_recording_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "a.npz").write_bytes(packed(*_good()))
-    monkeypatch.setattr("blocksim.cli.filming.MOST_NUMBERS", 10)
+    monkeypatch.setattr("blocksim.cli.rendering.MOST_NUMBERS", 10)
     for kind in ("csv", "json", "glb", "gltf"):
         out = str(tmp_path / f"o.{kind}")
         assert "at most 10 as" in one_line(

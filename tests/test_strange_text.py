@@ -25,7 +25,7 @@ from blocksim import load_recording, load_structure, structure_of
 from blocksim.common.files import json_text
 from blocksim.common.sheets import sheet_of
 from blocksim.common.words import printable
-from blocksim.report.chart import read_points
+from blocksim.report.tables import read_points
 from blocksim.studies.chart import Point
 from blocksim.view.chartfigure import chart_figures
 from blocksim.view.explorer import explorer_page

@@ -18,8 +18,8 @@ from blocksim.ask.methods import METHODS
 from blocksim.cli.studies import chart_table
 from blocksim.common.files import json_text
 from blocksim.engines import ENGINES
-from blocksim.report import chart
-from blocksim.report.chart import read_points, write_chart
+from blocksim.report import tables
+from blocksim.report.tables import read_points, write_chart
 from blocksim.simulation.motion import QUIET
 from blocksim.studies import refinement
 from blocksim.studies.chart import ChartArch, Point, front, measure
@@ -135,7 +135,7 @@ def laid_out_only(monkeypatch: pytest.MonkeyPatch) -> None:
         figure.draw_without_rendering()
         return {f"{name}.png": b""}
 
-    monkeypatch.setattr(chart, "pictures", laid_out)
+    monkeypatch.setattr(tables, "pictures", laid_out)
 
 
 @pytest.mark.usefixtures("laid_out_only")

@@ -37,7 +37,7 @@ from blocksim import (
 from blocksim.cli.proving import write_proof
 from blocksim.common.files import make_folder, require_place, write_folder, write_whole
 from blocksim.common.sheets import write_sheet
-from blocksim.report.poses import write_recording_csv, write_recording_json
+from blocksim.report.recordings import write_recording_csv, write_recording_json
 from blocksim.report.sheetpage import structure_page
 from blocksim.view.drawing import save_figure
 from blocksim.view.models import write_model

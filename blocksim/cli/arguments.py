@@ -171,7 +171,6 @@ def command_of(function: Callable[..., None], name: str | None = None) -> Comman
             parameters.append(_parameter(each.name, hint, said))
 
     def called(**given: Any) -> None:
-        given = {key: _listed(value) for key, value in given.items()}
         made = {
             key: group(**{one.name: given.pop(one.name) for one in fields(group)})
             for key, group in groups.items()
@@ -181,11 +180,6 @@ def command_of(function: Callable[..., None], name: str | None = None) -> Comman
     made = Command(name, callback=called, params=parameters, help=getdoc(function))
     made.headings = headings
     return made
-
-
-def _listed(value: object) -> object:
-    """Return an option that may be repeated as a list, None where it was not given."""
-    return None if value == [] else value
 
 
 def _parameter(name: str, hint: Any, declared: Declared[Any]) -> click.Parameter:
@@ -213,8 +207,8 @@ def _parameter(name: str, hint: Any, declared: Declared[Any]) -> click.Parameter
     )
 
 
-def _as_list(context: object, parameter: object, value: tuple[str, ...]) -> list[str]:  # noqa: ARG001
-    return list(value)
+def _as_list(context: object, parameter: object, value: tuple[str, ...]) -> list[str] | None:  # noqa: ARG001
+    return list(value) or None
 
 
 def _kind(hint: Any) -> Any:

@@ -1,23 +1,26 @@
-"""The commands check and bracket."""
+"""The commands check and bracket, and the files of bracket."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import click
 
 from blocksim.ask.bracket import Bracket
 from blocksim.ask.bracket import bracket as ask_bracket
 from blocksim.ask.check import check as ask_check
+from blocksim.ask.crossing import crossing
 from blocksim.ask.options import Options
 from blocksim.blocks.joints import joint_names
 from blocksim.blocks.problem import Problem
-from blocksim.cli.acting import Crossed, Loading
+from blocksim.blocks.vehicles import vehicle_of
 from blocksim.cli.arguments import option
-from blocksim.cli.built import Given
-from blocksim.cli.curves import cross, require_curves, write_curves
+from blocksim.cli.given import Crossed, Given, Loading
 from blocksim.cli.options import (
     CASES,
     EXIT_CODES,
@@ -37,15 +40,22 @@ from blocksim.cli.options import (
     refuse,
     settings_of,
 )
-from blocksim.cli.output import answer_with, progress
+from blocksim.cli.output import CURVES, answer_with, picture_kind, progress, write_files
 from blocksim.cli.proving import write_proof
 from blocksim.cli.subject import anything_asked, is_many
 from blocksim.common.checks import require
+from blocksim.common.sheets import write_sheet
 from blocksim.report.answers import bracket_record, check_record
 from blocksim.report.answerwords import bracket_lines, check_lines
 from blocksim.report.cases import cases_lines, cases_record
+from blocksim.report.crossing import crossing_lines, crossing_record, write_places
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 OF_ONE = "left out beside --cases: it is of one case"
+MOVING = ("push", "spread")
+"""Searches that move blocks."""
 
 
 def check(
@@ -68,7 +78,7 @@ def check(
     by limit analysis. Of --cases, a table with the governing case first, whose exit code it is.
     """
     if cases is not None:
-        from blocksim.cli.cases import asked_of_cases
+        from blocksim.cli.many import asked_of_cases
 
         refuse({"joint": joint, "must_rest": must_rest, "proof": proof}, why=OF_ONE)
         options = Options(method=method, settings=settings_of(settings), reduce=reduce)
@@ -142,12 +152,9 @@ def bracket(
         allowed = "left out, or --vehicle beside it"
         require(crossed.along is None, "--along", crossed.along, allowed)
         require_curves(over, crossed.out)
+    of_arch = over in {None, THICKNESS} and scene is None
     # The thickness of an arch under its own weight need not be given to be sought.
-    sought = (
-        over in {None, THICKNESS}
-        and scene is None
-        and not (crosses or spatial or loading.given)
-    )
+    sought = of_arch and not (crosses or spatial or loading.given)
     if sought:
         refuse({"eta": given.eta, "ratio": given.ratio}, why="left out: the least is sought")
     push, loading = loading.push, replace(loading, push=None)
@@ -166,33 +173,110 @@ def bracket(
         cross(problem, crossed, usual, as_json=as_json)
         return
     with named_options(), progress() as report:
-        options = Options(
-            method=method,
-            tol=tol,
-            settings=settings_of(settings),
-            reduce=reduce,
-            progress=report,
-        )
-        if push is None:
-            answer = ask_bracket(problem, over=over, within=within, **options)
-        else:
-            answer = _falls_first(problem, push, over, within, options)
+        how = Options(method=method, tol=tol, settings=settings_of(settings), reduce=reduce)
+        answer = _answer(problem, push, over, within, {**how, "progress": report})
     write_proof(answer.method, () if proof is None else answer.proofs, proof)
     if crossed.out is not None and not problem.in_space:
         write_curves(problem, answer.over, crossed.out, silent=as_json)
     answer_with(lambda: bracket_record(answer), lambda: bracket_lines(answer), as_json=as_json)
 
 
-def _falls_first(
+def _answer(
     problem: Problem,
-    push: float,
+    push: float | None,
     over: str | None,
     within: tuple[float, float] | None,
     options: Options,
 ) -> Bracket[Any]:
-    """Search with a push to either side, and return the bracket in which it falls first."""
+    """Search, with a push to either side and for where it falls first if there is one."""
+    if push is None:
+        return ask_bracket(problem, over=over, within=within, **options)
     from blocksim.ask.push import first_to_fall, pushed_each_way
 
     ways = pushed_each_way(problem, push)
     found = [ask_bracket(each, over=over, within=within, **options) for each in ways]
     return first_to_fall(found)
+
+
+def require_curves(over: str | None, out: Sequence[Path] | None) -> None:
+    """Raise `InputError` unless files can be written of what is searched over."""
+    if out is not None:
+        allowed = "left out, or --vehicle, --over push or --over spread beside it"
+        require(over in MOVING, "--out", str(out[0]), allowed)
+    for path in out or ():
+        picture_kind(path, CURVES)
+
+
+def write_curves(problem: Problem, over: str, out: Sequence[Path], *, silent: bool) -> None:
+    """Write tables and pictures of what is borne as it moves."""
+    from blocksim.view.curvefigure import Line, curve_figure
+    from blocksim.view.sheet import title_of
+    from blocksim.view.style import THRUST
+
+    title = title_of(problem)
+    if over == "push":
+        from blocksim.ask.push import WAYS, curve
+
+        found = [curve(problem, way) for way in WAYS]
+        names = ["way", "moved_m", "push_g"]
+        rows = [
+            [each.way, moved, push]
+            for each in found
+            for moved, push in zip(each.moved, each.pushes, strict=True)
+        ]
+        words = f"{title}: push that is borne as the first mechanism moves"
+        lines = [Line(f"to the {each.way}", each.moved, each.pushes) for each in found]
+        axes = "way of the centre of mass [m]", "push over weight [g]"
+    else:
+        from blocksim.ask.moved import thrusts_over
+
+        points = thrusts_over(problem)
+        names = ["spread_m", "thrust_min_kN", "thrust_max_kN"]
+        rows = [
+            [value, *(None if math.isnan(each) else each / 1e3 for each in ends)]
+            for value, *ends in points
+        ]
+        words = f"{title}: thrust at the crown as the supports move apart, until it falls"
+        way = [each[0] for each in points]
+        lines = [
+            Line(name, way, [each[place] / 1e3 for each in points], THRUST)
+            for name, place in (("least thrust", 1), ("greatest thrust", 2))
+        ]
+        axes = "way of the supports [m]", "thrust [kN]"
+    tables = {"csv": partial(write_sheet, names=names, rows=rows)}
+    write_files(out, tables, lambda: curve_figure(words, *axes, lines), silent=silent)
+
+
+def cross(
+    problem: Problem, crossed: Crossed, usual: Mapping[str, bool], *, as_json: bool
+) -> None:
+    """Find the worst place of a vehicle, and tell it.
+
+    `usual`: Options of other searches, and whether they were left out or say nothing else.
+    """
+    for name, ok in usual.items():
+        allowed = "left out beside --vehicle: limit analysis searches over its places"
+        require(ok, name, "given", allowed)
+    for path in crossed.out or ():
+        picture_kind(path, (*CURVES, "dxf"))
+    allowed = "given beside --vehicle: blocks have no weight in kN"
+    require(problem.weighed, "--unit-weight", "none", allowed)
+    with named_options(), progress() as report:
+        found = crossing(problem, vehicle_of(crossed.vehicle or ""), progress=report)
+    answer_with(lambda: crossing_record(found), lambda: crossing_lines(found), as_json=as_json)
+
+    def draw(file: BinaryIO) -> None:
+        from blocksim.view.sheet import sheet_of
+        from blocksim.view.sheetdxf import write_dxf
+
+        verdict = f"worst place of {found.vehicle.words}"
+        sheet = sheet_of(found.problem, verdict=verdict, mechanism=found.mechanism)
+        write_dxf(sheet, file)
+
+    def figure() -> Figure:
+        from blocksim.view.curvefigure import envelope_figure
+
+        return envelope_figure(found)
+
+    tables = {"csv": partial(write_places, found), "dxf": draw}
+    write_files(crossed.out or (), tables, figure, silent=as_json)

@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import Any, cast
 
 from blocksim.cli.arguments import NEEDED, argument, option
-from blocksim.cli.built import DEPTH, LAYER, MU, SNAP, TOLERANCE, UNIT
+from blocksim.cli.given import DEPTH, LAYER, MU, SNAP, TOLERANCE, UNIT
 from blocksim.cli.options import named_options, require_given
-from blocksim.cli.output import picture_kind, save_picture, say
-from blocksim.cli.structures import reading_of
+from blocksim.cli.output import picture_kind, say, write
+from blocksim.cli.subject import reading_of
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
-from blocksim.common.files import json_text, require_place, write_whole
+from blocksim.common.files import json_text, require_place
 from blocksim.common.words import counted
 from blocksim.kinds.changes import edited
 from blocksim.kinds.files import DRAWN, drawing_of, is_drawing, named_file, structure_of
@@ -61,7 +61,7 @@ def convert(
         raise
     _draw(drawing, picture, None)
     if out is not None:
-        write_whole(out, lambda file: file.write(_text(table).encode()))
+        write(out, _text(table).encode(), silent=True)
     made, where = problem.assembly, source if out is None else f"wrote {out}"
     parts = (made.blocks, "block"), (made.supports, "support"), (made.joints, "joint")
     sizes = ", ".join(counted(len(each), noun) for each, noun in parts)
@@ -74,8 +74,7 @@ def _draw(drawing: Drawing | None, picture: Path | None, refusal: InputError | N
         return
     from blocksim.view.readfigure import read_figure
 
-    kind = picture.suffix.removeprefix(".")
-    save_picture(read_figure(drawing, refusal), picture, kind)
+    write(picture, read_figure(drawing, refusal))
 
 
 def _held(said: object, fixed: str | None) -> dict[str, Any]:

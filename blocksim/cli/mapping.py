@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import click
 
 from blocksim.cli.arguments import argument, option
-from blocksim.cli.options import JSON, require_given
-from blocksim.cli.output import answer_with, picture_kind, progress, save_picture, say
+from blocksim.cli.options import JSON, refuse, require_given
+from blocksim.cli.output import answer_with, picture_kind, progress, say, write
 from blocksim.common.checks import Range, require
 from blocksim.common.errors import MISSING, InputError
-from blocksim.common.files import write_whole
 from blocksim.common.words import counted
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 ZOOMS = {"whole": (0.0, 2.0), "central": (0.6, 1.2)}
 LINE_ZOOMS = {"whole": (0.0, 2.0), "lower": (0.0, 1.0), "upper": (0.6, 2.0)}
@@ -47,53 +49,36 @@ def draw_map(
     friction, and its collapse. In numbers (.csv, --table, --json) it has Table 1, the
     special angles, points on all lines, and the rates of every mode there.
     """
-    numbers = table or as_json
-    if not numbers:
-        require_given(out=out)
-        write_map(out or Path(), zoom, results, lines=lines, weight=weight, phi=phi)
+    if table or as_json:
+        require(out is None, "--out", str(out), "left out with --table or --json")
+        from blocksim.report.maptable import map_lines, map_record
+
+        answer_with(lambda: map_record(weight), lambda: map_lines(weight), as_json=as_json)
         return
-    require(out is None, "--out", str(out), "left out with --table or --json")
-    from blocksim.report.maptable import map_lines, map_record
-
-    answer_with(lambda: map_record(weight), lambda: map_lines(weight), as_json=as_json)
-
-
-def write_map(
-    out: Path,
-    zoom: str,
-    results: Path | None,
-    *,
-    lines: bool,
-    weight: OfWeight = "centreline",
-    phi: bool = False,
-) -> None:
-    """Write the map as a picture, as a page or as a table."""
+    require_given(out=out)
+    out = out or Path()
     kind = picture_kind(out, ("svg", "png", "pdf", "html", "csv"))
-    if kind != "html":
-        page = "left out unless --out ends in .html"
-        require(results is None, "--results", str(results), page)
-    what = ""
-    if kind in {"html", "csv"}:
-        what = "left out where --out is " + ("a page" if kind == "html" else ".csv")
-        require(not lines, "--lines", lines, what)
-        require(zoom == "whole", "--zoom", zoom, what)
-        require(not phi, "--phi", phi, what)
-    if kind == "html":
-        require(weight == "centreline", "--weight", weight, f"{what}: it asks")
-        from blocksim.view.explorer import explorer_page, read_results
-
-        rows = [] if results is None else read_results(results)
-        page = explorer_page(rows, str(results or "")).encode()
-        write_whole(out, lambda file: file.write(page))
-        say(f"wrote {out}")
+    page = "left out unless --out ends in .html"
+    require(results is None or kind == "html", "--results", str(results), page)
+    if kind not in {"html", "csv"}:
+        write(out, _picture(zoom, weight, lines=lines, phi=phi))
         return
+    what = "left out where --out is " + ("a page" if kind == "html" else ".csv")
+    refuse({"lines": lines, "zoom": zoom != "whole" and zoom, "phi": phi}, why=what)
     if kind == "csv":
         from blocksim.report.maptable import map_sheet
 
-        sheet = map_sheet(weight)
-        write_whole(out, lambda file: file.write(sheet))
-        say(f"wrote {out}")
+        write(out, map_sheet(weight))
         return
+    require(weight == "centreline", "--weight", weight, f"{what}: it asks")
+    from blocksim.view.explorer import explorer_page, read_results
+
+    rows = [] if results is None else read_results(results)
+    write(out, explorer_page(rows, str(results or "")).encode())
+
+
+def _picture(zoom: str, weight: OfWeight, *, lines: bool, phi: bool) -> Figure:
+    """Draw the map, or its lines."""
     from blocksim.view.linemap import line_map_figure
     from blocksim.view.mapfigure import map_figure
     from blocksim.view.mapshapes import FrictionAxis
@@ -102,10 +87,8 @@ def write_map(
     require(zoom in zooms, "--zoom", zoom, f"one of {', '.join(zooms)}")
     friction = FrictionAxis(angle=phi)
     if lines:
-        figure = line_map_figure(zooms[zoom], weight, friction)
-    else:
-        figure = map_figure(central=zoom == "central", weight=weight, friction=friction)
-    save_picture(figure, out, kind)
+        return line_map_figure(zooms[zoom], weight, friction)
+    return map_figure(central=zoom == "central", weight=weight, friction=friction)
 
 
 MET = 1e-12

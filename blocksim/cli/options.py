@@ -9,9 +9,8 @@ from pathlib import PurePath
 
 from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES
-from blocksim.cli.acting import Crossed, Loading
 from blocksim.cli.arguments import argument, option
-from blocksim.cli.built import PARAMETERS, Given
+from blocksim.cli.given import PARAMETERS, Crossed, Given, Loading
 from blocksim.common.checks import require
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.common.files import json_of

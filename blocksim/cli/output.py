@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 COLOURS = {"STANDS": "green", "COLLAPSES": "red", "UNDECIDED": "yellow"}
 """Colour of the word with which an answer begins."""
+CURVES = ("csv", "pdf", "svg", "png")
+"""Kinds of files of a curve."""
 _LABEL = re.compile(r"  \S{1,7} +(?=\S)|\s*")
 _UNIT = re.compile(r"(?<=\d) (?=[A-Za-z%])")
 """Space between a number and what it counts, where no line ends."""
@@ -49,12 +51,30 @@ def picture_kind(out: Path, kinds: tuple[str, ...], option: str = "--out") -> st
     return kind
 
 
-def save_picture(figure: Figure, out: Path, kind: str, height: int | None = None) -> None:
-    """Write a picture whole, so many pixels high if it is a png, and say so."""
-    from blocksim.view.drawing import save_figure
+def write(
+    out: Path,
+    made: bytes | Callable[[BinaryIO], object] | Figure,
+    *,
+    height: int | None = None,
+    said: str = "",
+    silent: bool = False,
+) -> None:
+    """Write a file whole, and say so.
 
-    write_whole(out, lambda file: save_figure(figure, file, kind, height=height))
-    say(f"wrote {out}")
+    `made`: What is in it, what writes it, or a picture, so many pixels high if it is a png.
+    `said`: What is said of it besides.
+    """
+    if isinstance(made, bytes):
+        write_whole(out, lambda file: file.write(made))
+    elif callable(made):
+        write_whole(out, made)
+    else:
+        from blocksim.view.drawing import save_figure
+
+        kind = out.suffix.removeprefix(".")
+        write_whole(out, lambda file: save_figure(made, file, kind, height=height))
+    if not silent:
+        say(f"wrote {out}{said}")
 
 
 def write_files(
@@ -66,15 +86,7 @@ def write_files(
 ) -> None:
     """Write files by their endings, one of `tables` or else a picture, and say so."""
     for path in paths:
-        kind = path.suffix.removeprefix(".")
-        if kind in tables:
-            write_whole(path, tables[kind])
-        else:
-            from blocksim.view.drawing import save_figure
-
-            write_whole(path, lambda file, kind=kind: save_figure(figure(), file, kind))
-        if not silent:
-            say(f"wrote {path}")
+        write(path, tables.get(path.suffix.removeprefix(".")) or figure(), silent=silent)
 
 
 def answer_with(

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from blocksim.cli.arguments import NEEDED, argument
-from blocksim.cli.output import say
+from blocksim.cli.output import say, write
 from blocksim.common.errors import InputError
-from blocksim.common.files import read_file, write_whole
+from blocksim.common.files import read_file
 
 if TYPE_CHECKING:
     from blocksim.limit.proof import Proof
@@ -30,8 +30,7 @@ def verify(
         found = checked(text)
     except ValueError as error:
         raise InputError("proof", str(error), "one that holds", where=file) from None
-    for line in found.splitlines():
-        say(line)
+    say(*found.splitlines())
 
 
 def write_proof(method: str, proofs: Sequence[Proof], path: Path | None) -> None:
@@ -46,4 +45,4 @@ def write_proof(method: str, proofs: Sequence[Proof], path: Path | None) -> None
         raise InputError("--proof", str(path), "left out: no proof of this answer was found")
     records = [proof_record(each) for each in proofs]
     text = json.dumps(records[0] if len(records) == 1 else records)
-    write_whole(path, lambda file: file.write(text.encode()))
+    write(path, text.encode(), silent=True)

@@ -21,8 +21,7 @@ from blocksim.blocks.road import (
 )
 from blocksim.blocks.shaking import SHAPES, Shaking, read_table
 from blocksim.blocks.soil import Soil, coefficients, resistance
-from blocksim.cli.acting import SOIL, Loading
-from blocksim.cli.built import Given
+from blocksim.cli.given import SOIL, Given, Loading
 from blocksim.cli.options import named_options, option_of, refuse, require_given
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError

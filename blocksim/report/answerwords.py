@@ -93,17 +93,12 @@ def proof_words(answer: Check[Any]) -> str:
     if answer.needed is not None:
         return UNPROVED
     if proof is None:
-        return NONE_IN_SPACE if is_spatial(answer) else "none was found"
+        return NONE_IN_SPACE if answer.problem.in_space else "none was found"
     if proof.claim == "collapses":
         return "a motion that no joint forbids gains work, in rational arithmetic"
     if proof.tolerance:
         return "forces within friction balance to 1e-12 of each weight, in rational arithmetic"
     return "forces within friction balance exactly, in rational arithmetic"
-
-
-def is_spatial(answer: Check[Any] | Bracket[Any]) -> bool:
-    """Tell whether an answer is of blocks in space."""
-    return answer.problem.in_space
 
 
 def bracket_lines(answer: Bracket[Any]) -> list[str]:

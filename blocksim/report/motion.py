@@ -20,6 +20,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import fill_loads
 from blocksim.simulation.recording import Recording
 from blocksim.view.arrows import FEW, forces_of
+from blocksim.view.canvas import NOTHING, TIP, arrow
 from blocksim.view.drawing import carried, state_of_any
 from blocksim.view.stage import Stage
 from blocksim.view.structure import supports_shown
@@ -245,12 +246,9 @@ def _depth(corners: Array, point: Array, way: Array) -> float:
 
 def _arrow(what: str, line: Array) -> Arrow:
     tail, tip = line
-    long = float(np.hypot(*(tip - tail)))
-    along, size = (tip - tail) / long, min(HEAD, long / 3)
-    across = np.array([-along[1], along[0]])
-    back = tip - size * along
-    head = np.array([tip, back + 0.4 * size * across, back - 0.4 * size * across])
-    return Arrow(what, _points(np.array([tail, back])), _points(head))
+    size = min(HEAD, float(np.hypot(*(tip - tail))) / 3)
+    shaft, head = arrow(tail, tip, NOTHING, size / TIP)
+    return Arrow(what, _points(shaft.points), _points(head.points))
 
 
 def _place(point: Array) -> tuple[float, float]:

@@ -12,7 +12,6 @@ from blocksim.ask.methods import STATIC
 from blocksim.blocks.joints import JointState
 from blocksim.common.dates import made_at
 from blocksim.engines import engine_named
-from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_map
 from blocksim.report.motion import joints_of, mechanism_drawing, recorded_drawing
 from blocksim.report.rowwords import (
@@ -29,6 +28,7 @@ from blocksim.studies.agreement import Row, Unasked, disagreements, numbered, pa
 from blocksim.studies.questions import NEAR, SLOWLY
 from blocksim.studies.thickness import ASIDE, ERROR_BOUND
 from blocksim.view import style
+from blocksim.view.templates import template_of
 
 
 def report_page(
@@ -39,16 +39,17 @@ def report_page(
 ) -> str:
     """Write the page, of one engine or several: HTML that loads nothing."""
     arches, others = parted(found)
-    pages = environment()
-    pages.filters |= {"degrees": _degrees, "friction": _friction, "capitalised": _capitalised}
-    pages.filters |= {"found": found_of, "error": error_of, "known": known_of}
-    pages.filters |= {"question": question_of}
+    template = template_of(
+        "blocksim.report", "report.html", "templates", degrees=_degrees, friction=_friction,
+        capitalised=_capitalised, found=found_of, error=error_of, known=known_of,
+        question=question_of,
+    )  # fmt: skip
     engines = list(dict.fromkeys(row.method for row in arches))
     asked = dict.fromkeys(row.method for row in others if row.method not in STATIC)
     # Those on the map come first: its points have the same numbers.
     numbers = numbered([*arches, *others])
     drawn_map, dark = inline_map(map_svg, {n: name for name, n in numbers.items()})
-    return pages.get_template("report.html").render(
+    return template.render(
         cases=[
             _case(number, [row for row in found if row.structure == name])
             for name, number in numbers.items()

@@ -9,10 +9,10 @@ from blocksim.common.files import AnyPath, make_folder, write_whole
 from blocksim.common.progress import Progress, silent
 from blocksim.common.sheets import sheet_of
 from blocksim.common.version import __version__
-from blocksim.report.environment import environment
 from blocksim.studies.paper import CONTENTS, FIGURES, Printed, numbers
 from blocksim.view.drawing import save_figure
 from blocksim.view.paper import paper_figure
+from blocksim.view.templates import template_of
 
 PAGE = "index.html"
 NUMBERS = "numbers.csv"
@@ -45,7 +45,7 @@ def write_paper(
         write_whole(paths[-1], lambda file, figure=figure: save_figure(figure, file, kind))
     found = numbers()
     write_whole(paths[1], lambda file: file.write(_sheet(found)))
-    page = environment().get_template("paper.html")
+    page = template_of("blocksim.report", "paper.html", "templates")
     shown = [(number, names[number], CONTENTS[number]) for number in asked]
     worst = max(each.difference for each in found)
     html = page.render(figures=shown, numbers=found, worst=worst, version=__version__)

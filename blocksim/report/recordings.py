@@ -1,14 +1,149 @@
-"""Recordings as JSON objects and as text for people: what they show, not every pose."""
+"""Recordings as tables and JSON, in metres, seconds and radians, and as text for people.
+
+An arch of which no radius was given has r = 1 m.
+"""
 
 from __future__ import annotations
 
 import math
+from typing import Any, BinaryIO
 
+import numpy as np
+
+from blocksim.blocks.assembly import SUPPORT, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.record import to_record
+from blocksim.blocks.space.assembly import FaceJoint, SolidBlock
+from blocksim.common.files import json_text
+from blocksim.common.sheets import write_sheet
+from blocksim.common.version import __version__
 from blocksim.common.words import counted
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.shaken import rocking_of
+
+VERSION = 1
+"""Version of the JSON's fields. It grows when one changes its meaning or goes."""
+COLUMNS = ("x_m", "y_m", "rotation_rad")
+"""Names of the columns of poses in the plane."""
+IN_SPACE = ("x_m", "y_m", "z_m", "rotation_x_rad", "rotation_y_rad", "rotation_z_rad")
+"""Names of the columns for blocks in space."""
+
+
+def write_recording_csv(recording: Recording[Any], file: BinaryIO) -> None:
+    """Write a row for each block at each time, for `pandas.read_csv`.
+
+    Columns are `time_s`, `block` (its name, else its number), where its centre of weight is
+    (`x_m`, `y_m`) and `rotation_rad`, counter-clockwise. In space they are `z_m`, too, and a
+    rotation vector: `rotation_x_rad`, `rotation_y_rad` and `rotation_z_rad`.
+    """
+    poses, names = _poses(recording), _names(recording)
+    values = np.stack(list(poses.values()), axis=-1)
+    seconds = recording.seconds(STANDARD_GRAVITY).tolist()
+    rows = (
+        [time, name, *row]
+        for time, frame in zip(seconds, values, strict=True)
+        for name, row in zip(names, frame.tolist(), strict=True)
+    )
+    write_sheet(file, ["time_s", "block", *poses], rows)
+
+
+def write_recording_json(recording: Recording[Any], file: BinaryIO) -> None:
+    """Write what `recording_document` says."""
+    file.write(json_text(recording_document(recording)).encode())
+
+
+def recording_document(recording: Recording[Any]) -> dict[str, Any]:
+    """Return geometry and poses, a list a frame of a number a block, units in the names."""
+    assembly, problem = recording.assembly, recording.problem
+    names = _names(recording)
+    supports = [
+        {"name": each.name or f"support {at}", **_shape(each)}
+        for at, each in enumerate(assembly.supports)
+    ]
+    return {
+        "format": "blocksim recording",
+        "version": VERSION,
+        "blocksim": __version__,
+        "title": problem.title,
+        "engine": recording.engine,
+        "engine_version": recording.engine_version,
+        "state_hash": recording.state_hash,
+        "friction": problem.mu,
+        "gravity_g": problem.gravity.tolist(),
+        "gravity_m_s2": (problem.gravity * STANDARD_GRAVITY).tolist(),
+        "supports": supports,
+        "blocks": [
+            {
+                "name": name,
+                "centre_m": block.centre.tolist(),
+                **_shape(block),
+                **({} if problem.in_space else {"depth_m": block.depth}),
+                "weight_N": weight,
+            }
+            for name, block, weight in zip(
+                names, assembly.blocks, _weights(recording), strict=True
+            )
+        ],
+        "joints": [
+            {
+                "a": _side(joint, joint.before, names, supports),
+                "b": _side(joint, joint.after, names, supports),
+                **_ends(joint),
+            }
+            for joint in assembly.joints
+        ],
+        "time_s": recording.seconds(STANDARD_GRAVITY).tolist(),
+        **{name: column.tolist() for name, column in _poses(recording).items()},
+    }
+
+
+def _names(recording: Recording[Any]) -> list[str]:
+    return [block.name or str(at) for at, block in enumerate(recording.assembly.blocks)]
+
+
+def _shape(body: Any) -> dict[str, Any]:
+    """Return the outlines of a body, or the corners of its convex parts."""
+    if isinstance(body, SolidBlock):
+        return {"polyhedra_m": _lists(hull.corners for hull in body.hulls)}
+    return {"polygons_m": _lists(body.polygons)}
+
+
+def _weights(recording: Recording[Any]) -> list[float]:
+    """Return the weights of the blocks [N]."""
+    assembly = recording.assembly
+    if recording.problem.in_space:
+        return assembly.weights.tolist()
+    return [block.mass * STANDARD_GRAVITY for block in assembly.blocks]
+
+
+def _ends(joint: Joint | FaceJoint) -> dict[str, Any]:
+    """Return the ends of a joint, or the corners of the face that two blocks share."""
+    if isinstance(joint, FaceJoint):
+        return {"points_m": joint.points.tolist(), "normal": joint.normal.tolist()}
+    return {"ends_m": _lists((joint.inner, joint.outer))}
+
+
+def _side(
+    joint: Joint | FaceJoint, block: int, names: list[str], supports: list[dict[str, Any]]
+) -> str:
+    if block != SUPPORT:
+        return names[block]
+    return "support" if joint.support is None else str(supports[joint.support]["name"])
+
+
+def _poses(recording: Recording[Any]) -> dict[str, Any]:
+    """Columns of the poses, each (frames, blocks)."""
+    size = recording.assembly.size
+    columns = IN_SPACE if recording.problem.in_space else COLUMNS
+    return {
+        name: recording.poses[..., at] * (size if name.endswith("_m") else 1.0)
+        for at, name in enumerate(columns)
+    }
+
+
+def _lists(arrays: Any) -> list[Any]:
+    return [each.tolist() for each in arrays]
+
 
 ROUNDING = 1e-12
 """Length below which there is nothing but rounding [size]."""

@@ -19,9 +19,9 @@ from blocksim.common.files import (
 )
 from blocksim.common.sheets import sheet_of
 from blocksim.common.version import __version__
-from blocksim.report.environment import environment
 from blocksim.suite.families import LEVELS
 from blocksim.suite.score import MOST, Row, Score
+from blocksim.view.templates import template_of
 
 LARGEST = 1 << 22
 """Bytes of a score.json."""
@@ -114,10 +114,8 @@ def write_score(score: Score, folder: AnyPath) -> list[Path]:
 
 def score_page(records: Sequence[Mapping[str, Any]]) -> str:
     """Write a page on several engines, the first of which it is about, that loads nothing."""
-    pages = environment()
-    pages.filters["level"] = level_words
     groups = list(dict.fromkeys(name for record in records for name in record["groups"]))
-    return pages.get_template("score.html").render(
+    return template_of("blocksim.report", "score.html", "templates", level=level_words).render(
         records=records,
         about=records[0],
         groups=groups,

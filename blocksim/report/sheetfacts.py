@@ -19,11 +19,17 @@ from blocksim.limit.carried import Carried
 from blocksim.report.problems import weighed_arch
 from blocksim.report.sheettables import percent
 from blocksim.view.arrows import forces_of, push_of
-from blocksim.view.dimensions import Angle, dimensions_of
+from blocksim.view.dimensions import (
+    Angle,
+    ForceUnit,
+    common_depth,
+    dimensions_of,
+    length_words,
+    unit_weight,
+)
 from blocksim.view.sheet import LARGEST, Sheet
 from blocksim.view.solidscene import moving_box
 from blocksim.view.thrustlines import thrust_of
-from blocksim.view.units import ForceUnit, common_depth, length_words, unit_weight
 
 MEASURED = ("thickness", "voussoirs", "depth", "radius", "left_deg", "right_deg", "at")
 """Parameters of a circular arch that its dimensions say."""

@@ -17,7 +17,6 @@ from blocksim.common.version import __version__
 from blocksim.kinds.offers import offers_of
 from blocksim.report.answerwords import ASIDE, proof_words
 from blocksim.report.cases import HEADINGS, case_row
-from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_picture
 from blocksim.report.motion import mechanism_drawing
 from blocksim.report.sheetfacts import (
@@ -33,7 +32,7 @@ from blocksim.report.sheetfacts import (
 from blocksim.report.sheettables import (
     HINGE,
     MOST,
-    joint_rows,
+    joint_table,
     reaction_table,
     solid_reactions,
 )
@@ -42,6 +41,7 @@ from blocksim.view.drawing import save_figure, state_of_any, words_of
 from blocksim.view.sheet import Sheet, Titles, answer_sheet
 from blocksim.view.sheetfigure import sheet_figure
 from blocksim.view.solidfigure import solid_figure
+from blocksim.view.templates import template_of
 from blocksim.view.turning import turning_page
 
 COLUMN = (182.0, 128.0)
@@ -72,14 +72,14 @@ def structure_page(
     Returns: HTML that loads nothing.
     """
     sheet = answer_sheet(answer, titles)
-    template, fall = environment().get_template("sheet.html"), _fall(answer)
+    template = template_of("blocksim.report", "sheet.html", "templates")
+    fall = _fall(answer)
     return template.render(
         answer=answer,
         mode=mode,
-        cases=[] if cases is None else list(map(case_row, cases.answers)),
+        cases=cases,
+        case_rows=[] if cases is None else list(map(case_row, cases.answers)),
         case_headings=HEADINGS,
-        case_title="" if cases is None else cases.title,
-        governing="" if cases is None else cases.governing.case.name,
         fall=fall,
         most=MOST,
         version=__version__,
@@ -99,11 +99,11 @@ def _said(answer: Check[Any], sheet: Sheet) -> dict[str, object]:
     found = answer.resultants
     if problem.in_space and found is not None:
         headings, reactions = ["force"], solid_reactions(problem, found, sheet.unit)
-    rows = joint_rows(problem, found, sheet.unit)
+    heads, rows = joint_table(problem, found, sheet.unit)
     half = (len(rows) + 1) // 2
     return {
-        "title": sheet.title,
-        "source": problem.source,
+        "sheet": sheet,
+        "problem": problem,
         "notes": [f"{each[0].upper()}{each[1:]}." for each in problem.notes],
         "verdicts": _verdicts(answer, sheet),
         "titles": dict(sheet.titles.said),
@@ -117,12 +117,9 @@ def _said(answer: Check[Any], sheet: Sheet) -> dict[str, object]:
         "states": headings,
         "reactions": reactions,
         "forces": force_words(sheet.unit),
-        "unit": sheet.unit.name,
         "joints": (rows[:half], rows[half:]) if len(rows) > FEW else (rows,),
-        "hinged": any(row.width_used == HINGE for row in rows),
-        "joint_count": len(problem.assembly.joints),
-        "solid": problem.in_space,
-        "axes": "xyz" if problem.in_space else "HV",
+        "joint_heads": heads,
+        "hinged": any(HINGE in cells for _, cells in rows),
         "active": _active(answer),
     }
 
@@ -134,12 +131,12 @@ def _drawn(sheet: Sheet, answer: Check[Any], falling: Check[Any]) -> dict[str, o
     """
     drawn: dict[str, object] = {"pressures": "", "falling": "", "turned": ""}
     if answer.problem.in_space:
-        pictures = {"sheet": solid_figure(answer)}
+        pictures = {"picture": solid_figure(answer)}
         if falling is not answer:
             pictures["falling"] = solid_figure(falling)
         drawn["turned"] = turning_page(falling)
     else:
-        pictures = {"sheet": sheet_figure(sheet, column=COLUMN, bare=True)}
+        pictures = {"picture": sheet_figure(sheet, column=COLUMN, bare=True)}
         if sheet.carried is not None and sheet.carried.resultants is not None:
             lower = sheet_figure(sheet.pressures, column=LOWER, bare=True)
             pictures["pressures"] = lower
@@ -147,10 +144,10 @@ def _drawn(sheet: Sheet, answer: Check[Any], falling: Check[Any]) -> dict[str, o
     for name, figure in pictures.items():
         file = io.BytesIO()
         save_figure(figure, file, "svg")
-        drawn[name], dark = inline_picture(file.getvalue(), "sheet", "img", name)
+        anchor = "sheet" if name == "picture" else name
+        drawn[name], dark = inline_picture(file.getvalue(), "sheet", "img", anchor)
         colours |= dark
-    said = ", ".join(line.words for line in sheet.lines)
-    return {**drawn, "picture": drawn["sheet"], "described": said, "colours": colours}
+    return {**drawn, "colours": colours}
 
 
 def _verdicts(answer: Check[Any], sheet: Sheet) -> list[tuple[str, Verdict, str]]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,8 +12,8 @@ from blocksim.blocks.joints import joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.limit import Resultants, in_world, reactions
+from blocksim.view.dimensions import ForceUnit
 from blocksim.view.sheet import Sheet
-from blocksim.view.units import ForceUnit
 
 MOST = 60
 """Joints in the table; of more, those that are used most."""
@@ -22,20 +21,6 @@ MANY_SUPPORTS = 12
 """Supports in the table of reactions."""
 HINGE = "hinge"
 """Said in place of a share of width where blocks meet at a corner."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class JointRow:
-    """Forces of a joint in the words of the table."""
-
-    name: str
-    normal: str
-    friction: str
-    eccentricity: str
-    width_used: str
-    friction_used: str
-    stress: str
-    worst: bool
 
 
 def reaction_table(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
@@ -66,14 +51,18 @@ def reaction_table(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
     return [name for name, _ in columns], rows
 
 
-def joint_rows(
+def joint_table(
     problem: Problem[Any], found: Resultants | None, unit: ForceUnit
-) -> list[JointRow]:
-    """Tell what joints carry, in their order."""
+) -> tuple[list[tuple[str, str]], list[tuple[bool, tuple[str, ...]]]]:
+    """Tell what joints carry, in their order.
+
+    Returns: Headings with their units, without those of the names; and cells of each joint, its
+        name first, with whether it is the one that is used most.
+    """
     if found is None:
-        return []
+        return [], []
     names, worst = joint_names(problem.assembly), int(found.used.argmax())
-    chosen = np.sort(np.argsort(-found.used, kind="stable")[:MOST])
+    chosen: list[int] = np.sort(np.argsort(-found.used, kind="stable")[:MOST]).tolist()
     known = problem.weighed and problem.has_size
     if problem.in_space:
         middles = [each.points.mean(axis=0) for each in problem.assembly.joints]
@@ -84,21 +73,22 @@ def joint_rows(
         middle = joints.ends.mean(axis=1) * problem.assembly.size
         off = ((found.point - middle) * joints.tangent).sum(axis=1)
         hinges = joints.is_corner
-    return [
-        JointRow(
-            name=names[k],
-            normal=unit.number(float(found.normal[k])),
-            friction=unit.number(float(found.friction[k])),
-            eccentricity="-"
-            if hinges[k] or np.isnan(off[k])
-            else f"{round(1e3 * off[k]) + 0:d}",
-            stress=_stress(float(found.stress[k])) if known else "-",
-            width_used=HINGE if hinges[k] else percent(float(found.width_used[k])),
-            friction_used=percent(float(found.friction_used[k])),
-            worst=k == worst,
-        )
-        for k in map(int, chosen)
-    ]
+    off = np.where(hinges, np.nan, off)
+    columns: list[tuple[str, str, list[str]]] = [
+        ("normal", unit.name, [unit.number(float(found.normal[k])) for k in chosen]),
+        ("friction", unit.name, [unit.number(float(found.friction[k])) for k in chosen]),
+        ("ecc.", "mm", ["-" if np.isnan(off[k]) else f"{round(1e3 * off[k]) + 0:d}"
+                        for k in chosen]),
+        ("width", "used", [HINGE if hinges[k] else percent(float(found.width_used[k]))
+                           for k in chosen]),
+        ("friction", "used", [percent(float(found.friction_used[k])) for k in chosen]),
+        ("stress", "MPa", [_stress(float(found.stress[k])) if known else "-" for k in chosen]),
+    ]  # fmt: skip
+    if problem.in_space:
+        del columns[5], columns[3]
+    cells = zip([names[k] for k in chosen], *(each for *_, each in columns), strict=True)
+    rows = [(k == worst, row) for k, row in zip(chosen, cells, strict=True)]
+    return [(name, of) for name, of, _ in columns], rows
 
 
 def _stress(pascal: float) -> str:

@@ -1,4 +1,4 @@
-"""Results of `validate` as JSON, CSV, a map and a page."""
+"""Results of `validate` and of the chart as JSON, CSV, pictures and a page."""
 
 from __future__ import annotations
 
@@ -6,21 +6,27 @@ import io
 import math
 import platform
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import asdict, fields, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import blocksim
 from blocksim.ask.methods import METHODS
-from blocksim.common.files import AnyPath, json_text, write_folder
+from blocksim.common.errors import InputError
+from blocksim.common.files import AnyPath, json_of, json_text, read_file, write_folder
 from blocksim.common.sheets import sheet_of
+from blocksim.common.tables import as_said
+from blocksim.common.words import printable
 from blocksim.engines import ENGINES, NAMES, engine_named
 from blocksim.report.inlinemap import PAGE
 from blocksim.report.page import report_page
 from blocksim.studies.agreement import Row, Unasked, disagreements, numbered, parted
+from blocksim.studies.chart import Point, on_front
 from blocksim.studies.questions import NEAR, SLOWLY
+from blocksim.studies.refinement import REFINEMENTS
 from blocksim.studies.thickness import ASIDE, ERROR_BOUND
+from blocksim.view.chartfigure import chart_figures
 from blocksim.view.drawing import save_figure
 from blocksim.view.mapfigure import MapPoint, map_figure
 
@@ -150,3 +156,62 @@ def _points(rows: Sequence[Row]) -> list[MapPoint]:
             )
         )
     return points
+
+
+WRITTEN = "a file written by blocksim chart, or like it"
+LARGEST_FILE = 1 << 24
+"""Bytes; a larger file of points is not opened."""
+
+
+def write_chart(points: Sequence[Point], folder: AnyPath) -> list[Path]:
+    """Write chart.json and the pictures of `chart_figures`, .png and .svg, into a folder."""
+    contents = {"chart.json": _document(points)}
+    for name, figure in chart_figures(points).items():
+        contents |= pictures(name, figure)
+    return write_folder(folder, contents)
+
+
+def _document(points: Sequence[Point]) -> bytes:
+    by_time, by_work = on_front(points), on_front(points, "work")
+    records = [
+        {
+            **asdict(point),
+            "against": point.against,
+            "on_front": point in by_time,
+            "on_front_of_work": point in by_work,
+        }
+        for point in points
+    ]
+    knobs = {name: REFINEMENTS[name].words for name in dict.fromkeys(p.knob for p in points)}
+    drawn = {p.method for p in points}
+    document = {
+        "machine": machine(),
+        "libraries": {
+            name: engine.version
+            for name, engine in ENGINES.items()
+            if name in drawn and not engine.missing
+        },
+        "knobs": knobs,
+        "points": records,
+    }
+    return as_json(document)
+
+
+def read_points(path: AnyPath) -> list[Point]:
+    """Read points of another run or program, written as in chart.json.
+
+    The ends of brackets need not be told.
+    """
+    text = read_file(path, "points", WRITTEN, LARGEST_FILE)
+    try:
+        return [_point(record) for record in json_of(text)["points"]]
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError, InputError):
+        raise InputError("points", str(path), WRITTEN) from None
+
+
+def _point(record: dict[str, Any]) -> Point:
+    """Return a record as a point; `KeyError`, `TypeError` or `InputError` if it is none."""
+    found = as_said(Point, record)
+    if found.knob not in REFINEMENTS or not found.processor_s:
+        raise KeyError(found.knob)
+    return replace(found, case=printable(found.case), method=printable(found.method))

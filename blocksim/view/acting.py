@@ -15,11 +15,10 @@ from blocksim.blocks.shaking import Shaking
 from blocksim.blocks.space.extruded import UP
 from blocksim.view.arrows import forces_of, is_push
 from blocksim.view.canvas import Label, Panel, Shape, arrow, colour, mixed, width_of
-from blocksim.view.following import View, direction
-from blocksim.view.solidstage import SolidStage
-from blocksim.view.stage import Stage
-from blocksim.view.style import DEAD, GROUND, INK, LIVE, PAPER, QUIET
+from blocksim.view.stage import SolidStage, Stage
+from blocksim.view.style import DEAD, GROUND, INK, LIVE, PAPER, QUIET, THRUST
 from blocksim.view.timeline import UPRIGHT
+from blocksim.view.views import View, direction
 
 LONGEST = 0.15
 """Share of a panel's height that the largest load is long."""
@@ -52,6 +51,13 @@ class Acting:
         self._largest = max((float(np.linalg.norm(f)) for *_, f in self._loads), default=0.0)
 
     @property
+    def _held(self) -> list[tuple[int, Array]]:
+        """Supports that move, as blocks, and the direction of each."""
+        moves = self._stage.recording.problem.moves
+        ways = (move.direction for move in moves)
+        return list(zip(sorted(self._stage.carriers), ways, strict=True))
+
+    @property
     def entries(self) -> list[tuple[str, str]]:
         """Words and colours for the legend."""
         words = {"dead": ("dead load", DEAD), "live": ("live load", LIVE)}
@@ -69,25 +75,28 @@ class Acting:
             drawn += arrow(tail, tip, colour(LIVE if kind == "live" else DEAD), self._size)
         return drawn
 
+    def thrust(self, moment: Any) -> list[Shape]:
+        """Draw the line of thrust, on the near face, while all is at rest."""
+        tone, half = colour(THRUST, moment.statics), self._stage.depth / 2
+        lines = self._stage.thrust if moment.statics else ()
+        near = [np.pad(each, ((0, 0), (0, 1)), constant_values=half) for each in lines]
+        places = map(self._view.places, near)
+        return [Shape(each, edge=tone, width=2.4, closed=False) for each in places]
+
     def behind(self, moment: Any) -> list[Shape]:
         """Draw rods that hold supports which move, from beyond the picture or the ground."""
         stage, size = self._stage, self._stage.assembly.size
         built = stage.recording.poses[0, :, :2]
-        edge, fill = (
-            mixed(colour(GROUND), colour(INK), 0.45),
-            mixed(colour(GROUND), colour(PAPER), 0.35),
-        )
+        edge = mixed(colour(GROUND), colour(INK), 0.45)
+        fill = mixed(colour(GROUND), colour(PAPER), 0.35)
         rods: list[Shape] = []
-        moves = stage.recording.problem.moves
-        for block, move in zip(sorted(stage.carriers), moves, strict=True):
-            place = stage.point_at(moment, block, np.zeros(3))
-            away = np.append(move.direction, 0.0) / np.hypot(*move.direction)
+        for block, way in self._held:
+            place = moment.places[block]
+            away = np.append(way, 0.0) / np.hypot(*way)
             away *= 1.0 if away[:2] @ (built[block] - built.mean(axis=0)) > 0 else -1.0
             long = FAR if away[1] >= -0.5 else (place[1] - stage.ground) / -away[1]
-            beside = (
-                ROD * stage.assembly.reach[block] / size * np.array([-away[1], away[0], 0.0])
-            )
-            end = place + long * away
+            wide = ROD * stage.assembly.reach[block] / size
+            beside, end = wide * np.array([-away[1], away[0], 0.0]), place + long * away
             outline = np.stack([place - beside, end - beside, end + beside, place + beside])
             rods.append(
                 Shape(self._view.places(outline), fill=fill, edge=edge, width=self._size)
@@ -126,15 +135,13 @@ class Acting:
 
     def _moved(self, moment: Any) -> float | None:
         """Return how far supports have moved along their way [m], or None where none do."""
-        stage, found = self._stage, list[float]()
-        moves = stage.recording.problem.moves
-        for block, move in zip(sorted(stage.carriers), moves, strict=True):
-            way = stage.point_at(moment, block, np.zeros(3))[:2]
-            way = way - stage.recording.poses[0, block, :2]
-            long = float(move.direction @ move.direction)
-            if long:
-                found.append(float(way @ move.direction) / long * stage.assembly.size)
-        return float(np.mean(found)) if found else None
+        built = self._stage.recording.poses[0, :, :2]
+        found = [
+            float((moment.places[block, :2] - built[block]) @ way) / float(way @ way)
+            for block, way in self._held
+            if way.any()
+        ]
+        return float(np.mean(found)) * self._stage.assembly.size if found else None
 
     def _pulse(self, shaking: Shaking, now: float) -> tuple[list[Shape], list[Label]]:
         """Draw acceleration over time in a corner, with a mark at the time shown."""

@@ -1,9 +1,10 @@
-"""An eye that sees convex pieces in perspective, and paints them from back to front.
+"""Cameras: one that draws back as blocks leave the picture, and an eye in perspective.
 
-Two convex bodies that do not meet are parted by a plane, and whoever is on the eye's side
-of it is painted later. Planes tried are those of the faces of the two, which part blocks
-that touch along a face, roll over an edge or have come apart; the one with the widest gap
-decides, so that a slight overlap does no harm.
+The eye sees convex pieces and paints them from back to front. Two convex bodies that do not
+meet are parted by a plane, and whoever is on the eye's side of it is painted later. Planes
+tried are those of the faces of the two, which part blocks that touch along a face, roll over an
+edge or have come apart; the one with the widest gap decides, so that a slight overlap does no
+harm.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
-from blocksim.view.canvas import Colour
+from blocksim.view.canvas import Colour, Panel, Shape
 
 DISTANCE = 4.2
 """Distance of the eye from the middle, in half-diagonals of what is shown."""
@@ -187,3 +188,52 @@ def _sorted(
             if waits[near] == 0:
                 heapq.heappush(free, (-float(distance[near]), near))
     return order
+
+
+EASED = 0.5
+"""How long before a block would leave the camera begins to draw back [s of film]."""
+FARTHEST = 1 / 12
+"""Least share of its size at the release that anything is drawn with."""
+MARGIN = 0.03
+"""Share of a panel on each side that blocks keep off."""
+
+
+def needed(places: Array, panel: Panel, centre: Array) -> float:
+    """Return the share at which places find room in a panel, about a point that stays."""
+    low = np.array([panel.x + MARGIN * panel.width, panel.y])
+    high = np.array([panel.x + (1 - MARGIN) * panel.width, panel.y + panel.height])
+    off = places - centre
+    room = np.where(off > 0, high - centre, centre - low)
+    least = float((room / np.maximum(np.abs(off), 1e-9)).min(initial=1.0))
+    return max(FARTHEST, min(1.0, least))
+
+
+def is_lost(places: Array, panel: Panel, centre: Array) -> bool:
+    """Tell whether no point is in the picture, however far the camera draws back."""
+    off = FARTHEST * (places - centre) + centre - [panel.x, panel.y]
+    return not bool(((off > 0) & (off < [panel.width, panel.height])).all(axis=1).any())
+
+
+def eased(times: Array, shares: Array, before: float) -> tuple[Array, Array]:
+    """Return times and shares of a camera that never comes nearer, and draws back smoothly.
+
+    At each time the share is at most what is needed there: it is the mean over a while of the
+    least that is needed up to the end of that while.
+    """
+    least: Array = np.minimum.accumulate(shares)
+    fine = np.linspace(float(times[0]), float(times[-1]), 4 * len(times))
+    ahead: Array = least[np.minimum(np.searchsorted(times, fine + before), len(times) - 1)]
+    # Sums of the mean, with what was at first going on before the release.
+    summed = np.concatenate([[0.0], np.cumsum((ahead[1:] + ahead[:-1]) / 2 * np.diff(fine))])
+    back = np.interp(fine - before, fine, summed)
+    early = np.maximum(0.0, before - (fine - fine[0])) * ahead[0]
+    mean: Array = (summed - back + early) / before if before > 0 else ahead
+    now: Array = least[np.minimum(np.searchsorted(times, fine), len(times) - 1)]
+    return fine, np.minimum(mean, now)
+
+
+def zoomed(shapes: Sequence[Shape], share: float, centre: Array) -> list[Shape]:
+    """Draw shapes smaller about a point. Lines keep their width."""
+    if share == 1:
+        return list(shapes)
+    return [shape._replace(points=centre + share * (shape.points - centre)) for shape in shapes]

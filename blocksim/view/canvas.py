@@ -30,6 +30,8 @@ from blocksim.view.style import FONT, GROUND, INK, PAPER, STONE
 Colour = tuple[float, float, float, float]
 """Red, green, blue and opacity, 0 to 1."""
 NOTHING: Colour = (0.0, 0.0, 0.0, 0.0)
+TIP = 12.0
+"""Length of the head of an arrow, in its size."""
 DOTS = 72
 """Dots an inch: a typographic point is a pixel."""
 
@@ -94,7 +96,7 @@ def arrow(tail: Array, tip: Array, tone: Colour, size: float) -> list[Shape]:
     if long < 2 * size:
         return []
     way = way / long
-    head = min(12 * size, long)
+    head = min(TIP * size, long)
     across = np.array([-way[1], way[0]]) * 0.42 * head
     back = tip - head * way
     return [

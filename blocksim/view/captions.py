@@ -14,12 +14,11 @@ from blocksim.simulation.shaken import outcome
 from blocksim.simulation.verdict import Verdict
 from blocksim.view.canvas import Label, Panel, Shape, arrow, colour, width_of
 from blocksim.view.drawing import friction_words, loading_words
-from blocksim.view.following import View, direction
 from blocksim.view.sheet import factor_words
-from blocksim.view.solidstage import SolidStage
-from blocksim.view.stage import Stage
+from blocksim.view.stage import SolidStage, Stage
 from blocksim.view.style import DASHES, QUIET
 from blocksim.view.timeline import UPRIGHT
+from blocksim.view.views import View, direction
 
 CLOCK = 405.0
 """Width of the clock and of what stands beside it, left of the legend [pixels at 720]."""
@@ -34,14 +33,14 @@ SLOW = (1, 2, 3, 4, 5, 6, 8)
 def gravity_arrow(
     stage: Stage | SolidStage, view: View, panel: Panel, size: float
 ) -> tuple[list[Shape], list[Label]]:
-    """Show where a view sees gravity pull, in a corner, unless that is straight down."""
+    """Show where a view sees gravity pull, in the left corner, unless that is straight down."""
     problem = stage.recording.problem
     pull = UPRIGHT @ problem.gravity if problem.in_space else problem.gravity
     straight = direction(view, np.zeros(3), np.array([0.0, -1.0, 0.0]))
     way = direction(view, np.zeros(3), pull / np.linalg.norm(pull))
     if not way.any() or np.allclose(straight, way, atol=1e-9, rtol=0):
         return [], []
-    middle = np.array([panel.x + panel.width - 64 * size, panel.y + panel.height - 36 * size])
+    middle = np.array([panel.x + 64 * size, panel.y + panel.height - 36 * size])
     half = 30 * size * way
     shapes = arrow(middle - half, middle + half, colour(QUIET), size)
     under = float(middle[1]) - 52 * size

@@ -16,6 +16,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.simulation.recording import Recording
 from blocksim.view.acting import Acting
+from blocksim.view.camera import EASED, eased, is_lost, needed, zoomed
 from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
 from blocksim.view.captions import (
     digits_of,
@@ -26,12 +27,9 @@ from blocksim.view.captions import (
     verdict_words,
 )
 from blocksim.view.drawing import round_length, words_of
-from blocksim.view.following import EASED, View, eased, is_lost, needed, zoomed
-from blocksim.view.planar import PlanarView
-from blocksim.view.solidstage import SolidStage
-from blocksim.view.spatial import SpatialView
-from blocksim.view.stage import Stage
+from blocksim.view.stage import SolidStage, Stage
 from blocksim.view.style import INK, JOINTS, QUIET, THRUST
+from blocksim.view.views import PlanarView, SpatialView, View
 
 ViewName = Literal["2d", "3d"]
 BEFORE, AFTER = 0.8, 1.2
@@ -179,7 +177,8 @@ class Film:
                 around = [*zoomed(view.still, share, view.centre), *bar]
                 labels += words
             beside, said = acting.aside(moment, share)
-            blocks = [*acting.behind(moment), *view.shapes(moment), *acting.shapes(moment)]
+            blocks = [*acting.behind(moment), *view.shapes(moment)]
+            blocks += [*acting.thrust(moment), *acting.shapes(moment)]
             parts.append((panel, [*around, *zoomed(blocks, share, view.centre), *beside]))
             labels += said
         size = self._size

@@ -81,9 +81,6 @@ def map_figure(
     `central`: Only the middle, where most regions meet (Fig. 11).
     `friction`: The coefficient; without points the friction angle is possible, too.
     """
-    if points and friction.angle:
-        message = "points are drawn on an axis of coefficients"
-        raise ValueError(message)
     with mpl.rc_context(FONT):
         figure = new_figure((10.4, 6.9) if points else (8.6, 7.0))
         axes = figure.add_subplot()
@@ -98,9 +95,7 @@ def map_figure(
             title or f"Least thickness and collapse modes of circular arches{OF[weight]}",
             pad=pad,
         )
-        if any(math.isinf(point.mu) for point in points):
-            draw_unbounded(axes, weight)
-        elif friction.angle and not central:
+        if any(math.isinf(point.mu) for point in points) or (friction.angle and not central):
             draw_unbounded(axes, weight, friction)
         if points:
             _draw_points(axes, section, points, unnamed=crowded)
@@ -238,26 +233,26 @@ def _free_place(
 def _legend(figure: Figure, points: Sequence[MapPoint]) -> None:
     """Tell modes by colour and shape, and number the arches, beside the picture."""
     seen = sorted({p.mode for p in points if p.mode}, key=list(Mode).index)
-    handles = [
-        Line2D([], [], ls="", marker=MODES[m].marker, mfc=MODES[m].colour, mec="white", ms=8,
-               label=f"{m.value}  {m.description.split(' (')[0]}")
+    marks = [
+        (f"{m.value}  {m.description.split(' (')[0]}", MODES[m].marker, MODES[m].colour,
+         "white", 8)
         for m in seen
     ]  # fmt: skip
     if any(point.mode is None for point in points):
-        handles.append(Line2D([], [], ls="", marker="*", mfc="k", ms=9, label="mode unnamed"))
+        marks.append(("mode unnamed", "*", "k", "k", 9))
     if any(point.miss for point in points):
-        ring = Line2D([], [], ls="", marker="o", mfc="none", mec=MISS, ms=11, label="a miss")
-        handles.append(ring)
-    for outline in (False, True):
+        marks.append(("a miss", "o", "none", MISS, 11))
+    for outline, fill, size in ((False, "k", 8), (True, "none", 11)):
         engine = next((p.engine for p in points if p.outline is outline and p.engine), None)
-        if engine:
-            fill, size = ("none", 11) if outline else ("k", 8)
-            shape = Line2D([], [], ls="", marker="o", mec="k", mfc=fill, ms=size, label=engine)
-            handles.append(shape)
-    handles += [
-        Line2D([], [], ls="", label=f"{p.label:>2}  {p.note}{NONE if p.none_stands else ''}")
+        marks += [(engine, "o", fill, "k", size)] if engine else []
+    marks += [
+        (f"{p.label:>2}  {p.note}{NONE if p.none_stands else ''}", "", "k", "k", 0)
         for p in points
         if not p.outline
+    ]
+    handles = [
+        Line2D([], [], ls="", label=label, marker=marker, mfc=fill, mec=edge, ms=size)
+        for label, marker, fill, edge, size in marks
     ]
     figure.legend(
         handles=handles,

@@ -15,10 +15,10 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.words import counted, printable
 from blocksim.limit import Reaction, reactions
 from blocksim.limit.carried import Carried
+from blocksim.view.dimensions import ForceUnit, common_depth, force_unit, unit_weight
 from blocksim.view.drawing import friction_words, loading_words
 from blocksim.view.structure import supports_shown
 from blocksim.view.thrustlines import is_chained, near_blocks, thrust_lines, thrust_of
-from blocksim.view.units import ForceUnit, common_depth, force_unit, unit_weight
 
 STEPS = (1.0, 2.0, 2.5, 5.0)
 """Scales that are drawn to, times powers of ten."""

@@ -13,10 +13,10 @@ from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import Canvas, Label, Panel, Shape, colour
 from blocksim.view.captions import gravity_arrow, legend_of, title
 from blocksim.view.solidscene import WAY, force_lines, told
-from blocksim.view.solidstage import SolidStage
-from blocksim.view.spatial import SpatialView
+from blocksim.view.stage import SolidStage
 from blocksim.view.style import QUIET, THRUST
 from blocksim.view.timeline import UPRIGHT
+from blocksim.view.views import SpatialView
 
 if TYPE_CHECKING:
     from blocksim.ask.check import Check

@@ -89,8 +89,8 @@ class Timeline(ABC):
     def at(self, time: float) -> Moment:
         """Return where everything is at a time, between frames by even turns."""
         poses = self.poses_at(time)
-        time, *around = self.between(time)
-        joints = self.joints_at(self._looked_at(poses, *around), time)
+        time, earlier, later, share = self.between(time)
+        joints = self.joints_at(self._looked_at(poses, earlier, later, share), time)
         return Moment(time, *upright(poses), joints, self.statics_at(time))
 
     def _looked_at(self, poses: Array, earlier: int, later: int, share: float) -> Array:  # noqa: ARG002

@@ -11,7 +11,7 @@ from blocksim.common.words import counted, printable
 from blocksim.view.models import mechanism_model
 from blocksim.view.solidscene import told
 from blocksim.view.style import INK, PAPER, QUIET, VERDICTS
-from blocksim.view.templates import environment_of
+from blocksim.view.templates import template_of
 
 if TYPE_CHECKING:
     from blocksim.ask.check import Check
@@ -25,22 +25,18 @@ VERSION = "4.4.0"
 def turning_page(answer: Check[SpatialAssembly]) -> str:
     """Return the page as HTML, complete in itself."""
     problem = answer.problem
-    return (
-        environment_of("blocksim.view.turning")
-        .get_template("page.html")
-        .render(
-            title=printable(problem.title) or "Blocks in space",
-            verdict=f"{answer.verdict.value}, by {answer.method}",
-            about=f"{counted(len(problem.assembly.blocks), 'block')}, mu {problem.mu:g}",
-            model=base64.b64encode(mechanism_model(answer)).decode(),
-            told=told(each.state for each in answer.joints),
-            moves=answer.mechanism is not None,
-            tone=VERDICTS[answer.verdict],
-            paper=PAPER,
-            ink=INK,
-            quiet=QUIET,
-            script=VIEWER.read_text(encoding="utf-8"),
-            viewer=VERSION,
-            version=blocksim.__version__,
-        )
+    return template_of("blocksim.view.turning", "page.html").render(
+        title=printable(problem.title) or "Blocks in space",
+        verdict=f"{answer.verdict.value}, by {answer.method}",
+        about=f"{counted(len(problem.assembly.blocks), 'block')}, mu {problem.mu:g}",
+        model=base64.b64encode(mechanism_model(answer)).decode(),
+        told=told(each.state for each in answer.joints),
+        moves=answer.mechanism is not None,
+        tone=VERDICTS[answer.verdict],
+        paper=PAPER,
+        ink=INK,
+        quiet=QUIET,
+        script=VIEWER.read_text(encoding="utf-8"),
+        viewer=VERSION,
+        version=blocksim.__version__,
     )

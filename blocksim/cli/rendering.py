@@ -1,33 +1,33 @@
-"""What `render` asks for beyond a picture: recordings, and films of them."""
+"""What `render` draws: stills of what is built, recordings, and films of them."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
+from blocksim.arch.theory import least_thickness
+from blocksim.ask.answer import Check
 from blocksim.ask.check import check
 from blocksim.ask.methods import asked_as, choose
 from blocksim.ask.rest import let_go, rest_words
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
-from blocksim.cli.acting import Loading
 from blocksim.cli.arguments import option
-from blocksim.cli.built import Given
+from blocksim.cli.given import Given, Loading
 from blocksim.cli.options import OWN, named_options, refuse
-from blocksim.cli.output import progress, say
-from blocksim.cli.subject import anything_asked
+from blocksim.cli.output import progress, say, write
+from blocksim.cli.subject import anything_asked, arch_of, is_thick
 from blocksim.common.checks import Range, require
-from blocksim.common.errors import InputError
-from blocksim.common.files import write_whole
+from blocksim.common.errors import MISSING, InputError
 from blocksim.common.progress import Progress
 from blocksim.common.words import counted
 from blocksim.engines import NAMES
 from blocksim.kinds.loading import load_recording
-from blocksim.report.poses import write_recording_csv, write_recording_json
-from blocksim.report.recordings import unsolved_words
+from blocksim.report.recordings import unsolved_words, write_recording_csv, write_recording_json
 from blocksim.simulation.motion import EARLY
 from blocksim.simulation.observation import hold
 from blocksim.simulation.recording import Recording
@@ -174,16 +174,17 @@ def export(out: Path, kind: str, recording: Recording[Any]) -> None:
     if kind in MODELS:
         from blocksim.view.models import write_model
 
-        write_whole(out, lambda file: write_model(recording, file, kind))
+        made = partial(write_model, recording, kind=kind)
     else:
-        write = write_recording_csv if kind == "csv" else write_recording_json
-        write_whole(out, lambda file: write(recording, file))
+        of_table = write_recording_csv if kind == "csv" else write_recording_json
+        made = partial(of_table, recording)
     radius = "" if recording.problem.has_size else " if r = 1 m"
-    say(
-        f"wrote {out}: {counted(len(recording.assembly.blocks), 'block')}, "
+    said = (
+        f": {counted(len(recording.assembly.blocks), 'block')}, "
         f"{counted(len(recording.times), 'frame')}, "
         f"{recording.seconds(STANDARD_GRAVITY)[-1]:.3g} s{radius}"
     )
+    write(out, made, said=said)
 
 
 def _motionless(recording: Recording) -> str:
@@ -196,3 +197,74 @@ def _motionless(recording: Recording) -> str:
             f"moved {moved:.2g} r; simulate --seconds 2 records how it falls"
         )
     return f"nothing is seen to move in one recording ({arch}): it is at rest"
+
+
+def write_still(
+    out: Path,
+    kind: str,
+    scene: str | None,
+    given: Given,
+    loading: Loading,
+    method: str | None,
+    height: int | None,
+    *,
+    must_rest: bool,
+) -> None:
+    """Draw what stands still: a sheet of what is built, or the arch at its least thickness.
+
+    What leans out of its plane is drawn in space, where it is asked about.
+    """
+    solid = "another kind: a page to turn around (.html) is of blocks in space"
+    if scene is not None or loading.given or given.lean is not None or is_thick(given):
+        problem = anything_asked(scene, given, loading, thick=given.lean is None)
+        if problem.in_space or not problem.is_planar:
+            problem = asked_as(problem)
+            refuse({"must_rest": must_rest})
+            perspective = "a .png, .svg or .pdf: it is drawn in perspective; or .html, to turn "
+            require(kind != "dxf", "--out", str(out), f"{perspective}it around")
+        else:
+            require(kind != "html", "--out", str(out), solid)
+            as_built = "limit or an engine: it is drawn as built"
+            require(method != "theory", "--method", method, as_built)
+        with named_options(), progress() as report:
+            chosen = method or "auto"
+            answer = check(problem, method=chosen, must_rest=must_rest, progress=report)
+        _write(out, kind, answer, height)
+        return
+    require(kind != "html", "--out", str(out), solid)
+    require(method is None, "--method", method, "left out: the picture is of no motion")
+    require(not must_rest, "--must-rest", must_rest, "left out: nothing is built in its plane")
+    thin = "a .png, .svg or .pdf where no thickness is given"
+    require(kind != "dxf", "--out", str(out), thin)
+    from blocksim.view.archfigure import arch_figure, picture_of_theory
+
+    with named_options():
+        maker = arch_of(replace(given, eta=1.0))
+        shape = maker.shape
+        assert shape is not None  # noqa: S101 - by its half-angle, or span and rise
+        arch = shape.half_angle, maker.known_friction, shape.weight
+        critical = least_thickness(*arch)
+        if critical.eta is None:
+            raise InputError("eta", MISSING, "given where no thickness stands")
+        pictures = [picture_of_theory(critical, mode, *arch) for mode in critical.modes]
+    write(out, arch_figure(pictures), height=height)
+
+
+def _write(out: Path, kind: str, answer: Check[Any], height: int | None) -> None:
+    """Draw an answer to scale, in space in perspective, or write a page to turn it around."""
+    if kind == "html":
+        from blocksim.view.turning import turning_page
+
+        write(out, turning_page(answer).encode(), said=": a page to turn it around")
+    elif answer.problem.in_space:
+        from blocksim.view.solidfigure import solid_figure
+
+        write(out, solid_figure(answer), height=height)
+    else:
+        from blocksim.view.sheet import answer_sheet
+        from blocksim.view.sheetdxf import write_dxf
+        from blocksim.view.sheetfigure import sheet_figure
+
+        sheet = answer_sheet(answer)
+        made = partial(write_dxf, sheet) if kind == "dxf" else sheet_figure(sheet)
+        write(out, made, height=height)
