@@ -144,3 +144,32 @@ def test_the_strength_that_is_needed_is_of_any_size(heavy: float) -> None:
     column = blocksim.Column(drums=10, drum_height=1.5, width=1, friction=0.5, density=heavy)
     needed = blocksim.check(replace(column.problem(), strength=1e9)).needed
     assert needed.high == pytest.approx(15 * heavy, rel=1e-6)
+
+
+PASSIVE = ("--fill-passive", "0.33", "--fill-friction-angle", "30")
+BRIDGES = [
+    ("18.65", "6.417", "2.104", "18", "0.9263", "-3.501", "273.4"),
+    ("4.41", "1.32", "0.4835", "19", "0.9", "1.337", "25.18"),
+    ("10.02", "3.71", "0.8083", "15", "0.6391", "-1.15", "190.9", *PASSIVE),
+    ("18.02", "7.764", "1.407", "26", "0.917", "1.295", "215.7", *PASSIVE),
+]
+
+
+@pytest.mark.parametrize("bridge", BRIDGES)
+@pytest.mark.parametrize("mu", ["inf", "0.7"])
+def test_what_falls_is_told_whatever_the_friction(bridge: tuple[str, ...], mu: str) -> None:
+    """It falls at any load if its strength is too small for none, and at twice the largest."""
+    span, rise, thick, count, fill, x, live, *soil = bridge
+    asked = ("--span", span, "--rise", rise, "--thickness", thick, "--voussoirs", count)
+    asked = (*asked, "--mu", mu, "--fill", fill, "--unit-weight", "21", *soil)
+    asked = (*asked, "--point-load", x, live)
+    alone = answered("check", *asked, "--strength", "5", "--load", "0")
+    needed = alone["needed_strength_MPa"]
+    for share in (0.5, 0.999):
+        weak = answered("bracket", *asked, "--over", "load", "--strength", repr(share * needed))
+        assert (weak["low"], weak["high"]) == (None, None)
+    strong = (*asked, "--strength", repr(3 * needed))
+    most = answered("bracket", *strong, "--over", "load")["limit"]
+    for share, code in ((0.999, 0), (1.001, 1), (2, 1)):
+        found = inside("check", *strong, "--load", repr(share * most))
+        assert found.returncode == code, (share, found.stderr)

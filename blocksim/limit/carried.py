@@ -121,11 +121,12 @@ def carried_by(
 
     `joint`: Where thrust is asked for; by default at the crown
         (`blocksim.limit.margins.crown`).
-    `needed`: The least strength of blocks that crush.
+    `needed`: The least strength of blocks that crush; None where none suffices.
     """
     found = margins(problem)
     joint = crown(problem) if joint is None else joint
-    crushes = needed is not None and needed.low > (problem.strength or math.inf)
+    strength = problem.strength
+    crushes = strength is not None and (needed is None or needed.low > strength)
     ends = None if joint is None or crushes else thrust_range(problem, joint)
     least_thrust, greatest = ends or (None, None)
     mu = set(problem.friction.tolist())

@@ -8,6 +8,7 @@ of the second order, also where the strength is sought, in proportion to which P
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -27,8 +28,9 @@ from blocksim.limit.programme import scaled
 
 FINEST = 1e-11
 """Gap and residuals at which the solver may end; it ends where it gets no farther."""
-FAITHFUL = 1e-7
-"""Gap and residuals up to which its answer is taken."""
+FAITHFUL, ROUGH = 1e-7, 1e-5
+"""Gap and residuals up to which its answer is taken; the gap of a strength, which is told with
+it."""
 NOTHING = 1e-6
 """Force that is none, over what the joint carries."""
 ALIKE = 10.0
@@ -70,8 +72,8 @@ class Crushing:
 
     def __init__(self, problem: Problem, bearing: Bearing, strength: float) -> None:
         require_sizes(problem)
+        self._bearing, self._soil = bearing, bearing.columns
         self._cones = cones = bearing.cones
-        self._soil = bearing.columns
         crushing = strength * joint_areas(problem) / problem.unit_force
         # Both ends of each joint.
         self._full = np.repeat(crushing, 2)
@@ -141,11 +143,11 @@ class Crushing:
     def _solve(
         self, cost: Array, column: Any, right: Array, soil: Any, *, sought: bool = False
     ) -> tuple[Optimum, Array]:
-        """Find the least cost; beside the parts a factor, or a share that is sought."""
+        """Find the least cost of parts, a factor on a column, and a share that is sought."""
         cones, count, loads = self._cones, cost.size, int(soil.shape[1])
-        beside = sparse.csc_array((right.size, 1)) if sought else column
-        columns = [cones.balance, *([beside] if count > cones.count else ()), soil]
-        balance: Any = sparse.hstack(columns, format="csc")
+        beside = [] if column is None else [column]
+        beside += [sparse.csc_array((right.size, 1))] if sought else []
+        balance: Any = sparse.hstack([cones.balance, *beside, soil], format="csc")
         shares = np.arange(count, count + loads)
         above = np.concatenate([np.flatnonzero(cones.bounded), shares])
         pressing = _bounds(above, -1.0, count + loads)
@@ -156,24 +158,45 @@ class Crushing:
         )
         ends: list[Cone] = [("second-order", 3)] * self._full.size
         cost = np.append(cost, np.zeros(loads))
-        found = solved_cones(
-            sparse.csc_matrix((cost.size, cost.size)),
-            cost,
-            matrix,
-            np.concatenate([right, np.zeros(above.size), np.ones(loads), bound]),
-            [("zero", right.size), ("nonnegative", above.size + loads), *ends],
-            finest=FINEST,
-        )
-        said, values = str(found.status), np.array(found.x)
-        if "Infeasible" in said:
-            return UNBOUNDED if "Dual" in said else NONE, np.zeros(loads)
-        balanced = bool(np.isfinite(values).all())
-        balanced = balanced and np.abs(balance @ values - right).max() < FAITHFUL
-        gap = abs(float(found.obj_val) - float(found.obj_val_dual))
-        if not balanced or gap > FAITHFUL * max(1.0, abs(float(found.obj_val))):
-            raise Unsolved
-        optimum = Optimum(values=values[:count], prices=-np.array(found.z), unbounded=False)
-        return optimum, np.clip(values[count:], 0.0, 1.0)
+        # What defeats the solver in one scale it solves in the other.
+        for scaled_first in (True, False):
+            found = solved_cones(
+                sparse.csc_matrix((cost.size, cost.size)),
+                cost,
+                matrix,
+                np.concatenate([right, np.zeros(above.size), np.ones(loads), bound]),
+                [("zero", right.size), ("nonnegative", above.size + loads), *ends],
+                finest=FINEST,
+                scaled=scaled_first,
+            )
+            said = str(found.status)
+            if "Infeasible" in said:
+                return UNBOUNDED if "Dual" in said else NONE, np.zeros(loads)
+            if _is_faithful(found, balance, right, ROUGH if sought else FAITHFUL):
+                values, prices = np.array(found.x), -np.array(found.z)
+                optimum = replace(
+                    NONE, values=values[:count], prices=prices, least=float(found.obj_val_dual)
+                )
+                return optimum, np.clip(values[count:], 0.0, 1.0)
+        if self._is_hopeless(column, right, sought=sought):
+            return NONE, np.zeros(loads)
+        raise Unsolved
+
+    def _is_hopeless(self, column: Any, right: Array, *, sought: bool) -> bool:
+        """Tell whether no forces balance, or all that do need more strength.
+
+        The solver has no proof of the first where any strength may be had; without bound on
+        friction it often finds none of the second.
+        """
+        free = math.inf if column is not None else 0.0
+        beside = sparse.csc_array((right.size, 1)) if column is None else column
+        rigid, _ = self._bearing.most(beside, right, (-free, free))
+        if sought or not (rigid.exists or rigid.unbounded):
+            return not (rigid.exists or rigid.unbounded)
+        cost = np.zeros(self._cones.count + (column is not None) + 1)
+        cost[-1] = 1.0
+        found, _ = self._solve(cost, column, right, self._soil, sought=True)
+        return not found.exists or found.least > 1 + FAITHFUL
 
     def _law(self, count: int, *, sought: bool) -> tuple[Any, Array]:
         """Return rows and right sides of n^2 <= 2 P m, three of each end.
@@ -188,9 +211,9 @@ class Crushing:
         rows = sparse.vstack([u, u, w], format="csr")
         v = np.concatenate([np.ones(size), -np.ones(size), np.zeros(size)])
         order = np.arange(3 * size).reshape(3, size).T.ravel()
-        if count > self._cones.count:
-            last = sparse.csr_array(v[:, None] if sought else np.zeros((3 * size, 1)))
-            rows = sparse.hstack([rows, last], format="csr")
+        more = np.zeros((3 * size, count - self._cones.count))
+        more[:, -1:] += v[:, None] * sought
+        rows = sparse.hstack([rows, sparse.csr_array(more)], format="csr")
         return -rows[order], (0.0 if sought else 1.0) * v[order]
 
 
@@ -251,7 +274,7 @@ def _least(problem: Problem, bearing: Bearing) -> tuple[Crushing, Optimum, float
 
 
 def _needed(cones: Cones, crushing: Crushing, found: Optimum, unit: float) -> Needed:
-    parts, low = found.values[:-1], float(found.values[-1])
+    parts, low = found.values[:-1], min(found.least, float(found.values[-1]))
     return Needed(
         low=unit * low * (1 - FAITHFUL),
         high=unit * max(low, crushing.needed(parts)),
@@ -267,6 +290,14 @@ def require_sizes(problem: Problem) -> None:
     require(known, "strength", value, "left out, or sizes and unit weights in m and kN/m3")
     corners = bool(problem.assembly.joint_arrays.is_corner.any())
     require(not corners, "strength", value, "left out: a corner bears a block without a width")
+
+
+def _is_faithful(found: Any, balance: Any, right: Array, gap: float) -> bool:
+    """Tell whether forces balance, and no cost is lower by more than a gap."""
+    values, cost = np.array(found.x), float(found.obj_val)
+    if not np.isfinite(values).all() or np.abs(balance @ values - right).max() >= FAITHFUL:
+        return False
+    return abs(cost - float(found.obj_val_dual)) <= gap * max(1.0, abs(cost))
 
 
 def _bounds(at: NDArray[np.intp], sign: float, count: int) -> Any:

@@ -41,7 +41,7 @@ class Optimum:
     `prices`, (rows,): By how much the least cost grows with the right side of each row.
     `unbounded`: Whether nothing limits the cost from below.
     `basis`: HiGHS's own: what is active.
-    `least`: Where unknowns have to be whole, what the cost cannot be below.
+    `least`: What the cost cannot be below, where unknowns have to be whole or lie in cones.
     """
 
     values: Array
