@@ -173,3 +173,16 @@ def test_what_falls_is_told_whatever_the_friction(bridge: tuple[str, ...], mu: s
     for share, code in ((0.999, 0), (1.001, 1), (2, 1)):
         found = inside("check", *strong, "--load", repr(share * most))
         assert found.returncode == code, (share, found.stderr)
+
+
+def test_what_rigid_blocks_bear_at_any_load_crushes_under_twice_the_most() -> None:
+    arch = ("--span", "12.21", "--rise", "2.347", "--thickness", "1.29", "--voussoirs", "14")
+    fill = ("--unit-weight", "25.76", "--fill", "0.06309", "--dispersal", "boussinesq")
+    fill = (*fill, "--fill-pressure", "0.3", "--fill-friction-angle", "30")
+    asked = (*arch, *fill, "--mu", "inf", "--point-load", "-2.838", "156.4")
+    assert inside("check", *asked, "--load", "1000").returncode == 0
+    crushes = (*asked, "--strength", "28.44")
+    most = answered("bracket", *crushes, "--over", "load")["limit"]
+    for share, code in ((0.999, 0), (1.001, 1), (2, 1), (10, 1)):
+        found = inside("check", *crushes, "--load", repr(share * most))
+        assert found.returncode == code, (share, found.stdout, found.stderr)

@@ -34,8 +34,8 @@ it."""
 NOTHING = 1e-6
 """Force that is none, over what the joint carries."""
 ALIKE = 10.0
-"""Ratio of the strength that is needed to that of which a share is sought, up to which it is
-exact."""
+"""Ratio of the strength that is needed to that of which a share is sought, from which on it is
+sought again as a share of the first."""
 TRIES, FARTHER = 6, 100.0
 """How often another strength is tried, and how much more where nothing is told."""
 SPARED = (0.9, 0.5, 0.2, 0.05)
@@ -170,7 +170,8 @@ class Crushing:
                 scaled=scaled_first,
             )
             said = str(found.status)
-            if "Infeasible" in said:
+            # Of a strength that is sought it is wrong: that is 0 at least, and has no bound.
+            if "Infeasible" in said and not sought:
                 return UNBOUNDED if "Dual" in said else NONE, np.zeros(loads)
             if _is_faithful(found, balance, right, ROUGH if sought else FAITHFUL):
                 values, prices = np.array(found.x), -np.array(found.z)
@@ -257,18 +258,21 @@ def _least(problem: Problem, bearing: Bearing) -> tuple[Crushing, Optimum, float
     cones, pull = bearing.cones, problem.applied_forces()
     # Of which joints bear about what blocks weigh, so that its multiples are numbers near 1.
     unit = float(np.median(problem.unit_force * cones.unit / joint_areas(problem)))
+    last = None
     for _ in range(TRIES):
         crushing = Crushing(problem, bearing, unit)
         try:
             found, shares = crushing.least(-cones.loads(pull))
         except Unsolved:
+            if last is not None:
+                return last
             unit *= FARTHER
             continue
         if not found.exists:
             return None
-        share = float(found.values[-1])
+        share, last = float(found.values[-1]), (crushing, found, unit, shares)
         if 1 / ALIKE < share < ALIKE:
-            return crushing, found, unit, shares
+            return last
         unit *= share
     raise Unsolved
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
+from blocksim.common.errors import Unsolved
 from blocksim.limit.bearing import Bearing
 from blocksim.limit.cones import Cones
 from blocksim.limit.crushing import Crushing
@@ -75,7 +76,8 @@ class Thrust:
 def thrust_range(problem: Problem, joint: int) -> tuple[Thrust, Thrust] | None:
     """Find the least and the greatest thrust of a joint, two linear programmes.
 
-    Returns `least`, `greatest`: None where there is no equilibrium.
+    Returns `least`, `greatest`: None where there is no equilibrium, or blocks that crush leave
+        so little of it that the solver gives up.
     """
     bearing = Bearing(problem)
     cones = bearing.cones
@@ -93,7 +95,10 @@ def thrust_range(problem: Problem, joint: int) -> tuple[Thrust, Thrust] | None:
         if crushing is None:
             found = extreme(cones, sign * cost, problem.applied_forces(), solver)
         else:
-            found = crushing.extreme(sign * cost, -cones.loads(problem.applied_forces()))
+            try:
+                found = crushing.extreme(sign * cost, -cones.loads(problem.applied_forces()))
+            except Unsolved:
+                return None
         if found.unbounded:
             ends.append(Thrust(thrust=-sign * math.inf, forces=None))
         elif not found.exists:
