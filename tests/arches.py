@@ -1,7 +1,5 @@
 """Arches and blocks that several tests ask about, and the onset test of them."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from typing import Any

@@ -3,8 +3,6 @@
 A `Sketch` is what is drawn: polygons, friction, loads.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence

@@ -13,8 +13,6 @@ and what its solver returns is not believed but checked, force by force and end 
 That they can rest does not prove that they must, where joints slide.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

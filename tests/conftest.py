@@ -1,7 +1,5 @@
 """One profile for all properties, and what several files of tests compare with."""
 
-from __future__ import annotations
-
 import gc
 import os
 import shutil

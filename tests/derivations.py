@@ -1,7 +1,5 @@
 """Truth by another way: equations of the paper that blocksim does not use itself."""
 
-from __future__ import annotations
-
 import numpy as np
 
 Value = float | np.ndarray

@@ -1,7 +1,5 @@
 """Structures drawn as others draw them: DXF by ezdxf, SVG, assemblies of compas."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from pathlib import Path

@@ -8,8 +8,6 @@ must be why no thinner arch stands (multipliers not negative, the theorem of dua
 Newton's method starts at blocksim's answer, and only starts there.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -19,8 +19,6 @@ such motions an impact without slip leaves the nearest one, that which loses lea
 Lengths in m, gravity in m/s2, masses those of a density of 1.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable

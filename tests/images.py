@@ -1,7 +1,5 @@
 """The same problem in another form: mirrored, or with blocks and joints in another order."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -4,8 +4,6 @@ A nursery loads the libraries once. Each command is a fork of it, so that what o
 memory, files or the process itself is seen, and concerns no other.
 """
 
-from __future__ import annotations
-
 import atexit
 import contextlib
 import gc
@@ -22,7 +20,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 SLOW = 10.0
 """Processor time from which on a command hangs [s]."""
@@ -117,7 +115,7 @@ class Nursery:
             words, stdin=-1, stdout=-1, env=where, text=True, cwd=path
         )
 
-    def __enter__(self) -> Nursery:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:

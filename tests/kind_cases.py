@@ -1,7 +1,5 @@
 """Structures of the corpus as kinds make them: parameters that give the same blocks."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -14,8 +14,6 @@ from one vertex to the next. It needs no start and no guess at what contacts do,
 nothing but masses: none of what `blocksim.engines.contact` rests on.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 ZERO = 1e-8

@@ -7,8 +7,6 @@ Tests marked `long` are left out, as in the usual run. A line that is no longer 
 error: put another in its place.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -4,8 +4,6 @@ Those of the suite's scenes read what engines read, find contacts by themselves,
 forces balance; that of an assembly takes its joints.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from typing import Any

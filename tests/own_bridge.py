@@ -4,8 +4,6 @@ A circular arch between fixed abutments under its own weight, fill up to a level
 given for each voussoir. Forces at both ends of each joint; every row a voussoir's balance.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from typing import Any

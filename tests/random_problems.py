@@ -4,8 +4,6 @@ A `Question` is a problem for each value of one parameter (thickness, load, tilt
 overhang), and the value from which on it falls, or stands. `drawn` draws one.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable

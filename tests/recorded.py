@@ -1,7 +1,5 @@
 """Recordings of motions that are given, and the words of films of them."""
 
-from __future__ import annotations
-
 import io
 import json
 import re

@@ -1,7 +1,5 @@
 """Rows of a validation as made up for tests of the report, in no time."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -11,8 +11,6 @@ the block keeps 1 - 1.5 sin^2 alpha of its angular velocity, or none where that 
 impulse leans by (height/width) (1 - kept)/(1 + kept), which friction has to bear.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field

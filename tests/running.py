@@ -1,7 +1,5 @@
 """blocksim as a program of its own, and the processes it starts."""
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import io

@@ -1,7 +1,5 @@
 """Blocks in space for tests: cases whose answers are known, towers, an own programme."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import math

@@ -4,8 +4,6 @@ Each file is a good one of its format in which something was changed. Questions 
 that what takes long hangs.
 """
 
-from __future__ import annotations
-
 import copy
 import io
 import json

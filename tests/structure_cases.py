@@ -1,7 +1,5 @@
 """The corpus of structures whose answers are known; tests/structures/cases/README.md."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterable

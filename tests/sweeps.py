@@ -1,7 +1,5 @@
 """Designs that several tests sweep, and the rows that come of them."""
 
-from __future__ import annotations
-
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Every study runs, and its headline numbers hold."""
 
-from __future__ import annotations
-
 import csv
 import gzip
 import itertools

@@ -1,7 +1,5 @@
 """Answers as JSON: the same keys for every subject, as the published schema says."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -5,8 +5,6 @@ number of voussoirs; mass and centre of mass are those of the annular sector or 
 line, inertia that of the sector; mirror images are equal to the last bit.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

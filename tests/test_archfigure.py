@@ -1,7 +1,5 @@
 """The arch figure, of the continuous arch at its least thickness."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -4,8 +4,6 @@ A judge with a threshold must be bracketed to the tolerance; one that goes dark 
 threshold must leave a bracket that still holds it; one that never stands must say so.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 

@@ -1,7 +1,5 @@
 """Many structures at once: margins by statics alone, streams, folders, what is broken."""
 
-from __future__ import annotations
-
 import json
 import math
 import os

@@ -4,8 +4,6 @@ A flat block on a slope slides where the slope is steeper than the friction, and
 is steeper than its width over its height.
 """
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """What `check` tells an engineer, against an own linear programme and statics by hand."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What pictures claim: what is drawn is where it says, and what has parted looks parted."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from runpy import run_path

@@ -3,8 +3,6 @@
 Each limit is a closed form, written here.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from itertools import product

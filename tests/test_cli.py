@@ -1,7 +1,5 @@
 """The command line keeps its contract: exit codes, one line of error, JSON alone."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 from pathlib import Path

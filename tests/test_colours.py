@@ -1,7 +1,5 @@
 """Colours that mean something can be told apart and read, however they are seen."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from vision import SEEN, contrast, difference, lab, linear, nearest

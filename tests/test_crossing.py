@@ -1,7 +1,5 @@
 """Vehicles that cross, held against linear programmes of a bridge put together apart."""
 
-from __future__ import annotations
-
 import csv
 import json
 import math

@@ -1,7 +1,5 @@
 """Span, rise and thickness in, both forms out; nonsense refused in one line."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

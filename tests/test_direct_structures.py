@@ -1,7 +1,5 @@
 """The direct engine on any assembly: the corpus at the onset, closed forms in motion."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

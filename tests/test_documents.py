@@ -1,7 +1,5 @@
 """Pages do what they say: commands run and print what is shown, tables and numbers hold."""
 
-from __future__ import annotations
-
 import doctest
 import importlib
 import json

@@ -1,7 +1,5 @@
 """Joints of drawings as people have them: rounded, with gaps and overlaps, or far too many."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

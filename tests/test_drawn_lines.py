@@ -1,7 +1,5 @@
 """Drawings as they are: lines and arcs, odd layers, gaps, mortar, references, clones."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The map explorer as a file: complete in itself, its data as computed, results as written."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Films decoded again: what is in their frames is what the recording says."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -8,8 +8,6 @@ What breaks something is kept in `out/fuzz`; mended, it goes to `tests/corpus`, 
 with the files and `words.json`, the words of the command. Attacks begin there, too.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -3,8 +3,6 @@
 Truth: limit analysis. How near to it each is asked is what its contacts allow.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

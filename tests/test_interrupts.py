@@ -3,8 +3,6 @@
 A terminal sends Ctrl-C to every process of the command, so these tests do, too.
 """
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

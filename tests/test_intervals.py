@@ -1,7 +1,5 @@
 """All values of a parameter at which blocks stand: closed forms, and both ends by engines."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Sequence

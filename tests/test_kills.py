@@ -5,8 +5,6 @@ A few kills in every long run. For more:
     BLOCKSIM_KILLS=200 pytest -n 0 -s -m long tests/test_kills.py
 """
 
-from __future__ import annotations
-
 import json
 import os
 import random

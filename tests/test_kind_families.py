@@ -1,7 +1,5 @@
 """Least thickness, and other values at which a kind of structure begins to stand."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Kinds of structures: blocks and answers of the corpus, exact weights, invariances."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import fields

@@ -1,7 +1,5 @@
 """Shipped structures: what sources say, asked by name, compared, shown in the report."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

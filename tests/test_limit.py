@@ -6,8 +6,6 @@ the least violation of strength, whose zero in eta is the least thickness. Conve
 the closed form is exact where the hinges fall on joints and of second order otherwise.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Lines of answers in a pipe: none is longer than 80 characters, and none says less."""
 
-from __future__ import annotations
-
 import re
 import shlex
 import sys

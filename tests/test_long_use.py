@@ -1,7 +1,5 @@
 """Long use and strange surroundings: nothing grows, and nothing needed may be missing."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

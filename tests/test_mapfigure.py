@@ -1,7 +1,5 @@
 """The mode map with arches on it: where marks are, which are named, what the legend says."""
 
-from __future__ import annotations
-
 import math
 from itertools import combinations, pairwise
 

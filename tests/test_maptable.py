@@ -1,7 +1,5 @@
 """The map in numbers, over the friction angle, and for the weight of sectors."""
 
-from __future__ import annotations
-
 import json
 import math
 import tomllib

@@ -1,7 +1,5 @@
 """What joints need and the range of thrust, held to closed forms and to balance."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

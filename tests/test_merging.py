@@ -5,8 +5,6 @@ same engine. A guess of which blocks part is made wrong on purpose, and must not
 answer.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Meshes of others, and assemblies of compas that are not planar, are blocks in space."""
 
-from __future__ import annotations
-
 import copy
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Which mode an arch has: that of the mechanism it starts with, told of which arch it is."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

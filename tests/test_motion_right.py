@@ -3,8 +3,6 @@
 Truth: blocks that rock from impact to impact (`rocking`), integrated to 1e-10.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

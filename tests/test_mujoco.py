@@ -4,8 +4,6 @@ Contacts are soft, and so are the bounds: arches are asked
 0.5 % aside of their least thickness.
 """
 
-from __future__ import annotations
-
 from typing import cast
 
 import numpy as np

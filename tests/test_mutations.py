@@ -1,7 +1,5 @@
 """The list of wrong lines that tests must see is of lines that are there."""
 
-from __future__ import annotations
-
 import pytest
 from mutations import MUTATIONS, ROOT, Mutation
 

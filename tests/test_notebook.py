@@ -1,7 +1,5 @@
 """What a notebook shows: by IPython's own formatters, in words, drawings and plain data."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

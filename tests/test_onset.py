@@ -4,8 +4,6 @@ An equilibrium exists above the least thickness: that is exact, by limit analysi
 `direct`. A motion found there by an impulse engine must not be believed.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 

@@ -1,7 +1,5 @@
 """An engine and a maker from outside the package, asked by commands that know neither."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Every figure of the paper: what is drawn in it, beside what the paper prints."""
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib

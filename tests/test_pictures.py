@@ -1,7 +1,5 @@
 """Files that `render` and `map` write: every input as svg and pdf, stills of a height."""
 
-from __future__ import annotations
-
 import json
 import re
 import zlib

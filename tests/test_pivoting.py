@@ -4,8 +4,6 @@ Coulomb's law may have several answers. Each of the two has to be one; they have
 but where friction leaves a choice, and of rest and motion `direct` has to choose rest.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 

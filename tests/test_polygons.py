@@ -1,7 +1,5 @@
 """Joints found from polygons: counted by hand, given by the cases' authors, and invariant."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

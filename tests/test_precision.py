@@ -4,8 +4,6 @@ Held to the paper's equations in fifty digits (`exact`). Where the last bit of a
 the answer by more, as next to the end of the rotational mode, so much is allowed, and no more.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """The linear programme of any assembly, held to closed forms and to published values."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Verdicts of limit analysis at any ratio of sizes and weights, and rounding; their proofs."""
 
-from __future__ import annotations
-
 import copy
 import json
 import math

@@ -4,8 +4,6 @@ Held to limit analysis, and to invariance: where in Bullet's space the arch stan
 it is turned there, mirror, size, order of insertion, which run it is.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

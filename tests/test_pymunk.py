@@ -5,8 +5,6 @@ that falls, slides or tips, and to what cannot matter: size, material, mirror, o
 insertion, which process runs it. Energy never grows.
 """
 
-from __future__ import annotations
-
 import gc
 import math
 import subprocess

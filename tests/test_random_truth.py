@@ -1,7 +1,5 @@
 """What the study of random truth rests on: proofs by plain statics, and images of problems."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Drawings and files of other programs: read as structures, or refused in one line."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

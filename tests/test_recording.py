@@ -1,7 +1,5 @@
 """Recordings come back as they were, or are refused in one line; no half-written file."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import asdict, replace

@@ -1,7 +1,5 @@
 """Recordings as glTF, CSV and JSON: what others read in them is what was recorded."""
 
-from __future__ import annotations
-
 import json
 import math
 import shutil

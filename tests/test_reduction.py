@@ -5,8 +5,6 @@ the whole arch in the same engine. A guess of which joints move is made wrong on
 must not change an answer.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

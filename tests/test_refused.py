@@ -3,8 +3,6 @@
 Each row of `refused.json` is a command, the files it finds, and what its line has to say.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import shlex

@@ -1,7 +1,5 @@
 """What a release needs: pages that can be made again, parts that are missing, a true lock."""
 
-from __future__ import annotations
-
 import ast
 import re
 import sys

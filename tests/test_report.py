@@ -1,7 +1,5 @@
 """The report is one page that loads nothing, hides nothing and cannot be broken into."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections import Counter

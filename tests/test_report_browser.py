@@ -1,7 +1,5 @@
 """The report in a real browser: it plays, fits narrow windows, and complains of nothing."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import product
 

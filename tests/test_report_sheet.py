@@ -1,7 +1,5 @@
 """The report on one structure: what it says is true, is escaped, and fits the page."""
 
-from __future__ import annotations
-
 import html
 import json
 import math

@@ -1,7 +1,5 @@
 """Fill and loads on the road: weights by hand, statics, and what is refused."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """Rooms know none above them, and no modules import each other in a circle when they run."""
 
-from __future__ import annotations
-
 import ast
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Blocks that have come apart are solid in every engine, and nothing gives them energy."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Shipped arches say what theory says; files of arches as they were once are read."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from pathlib import Path

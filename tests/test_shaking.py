@@ -4,8 +4,6 @@ Truth: Housner's equation of a rocking block (`rocking`); the corpus (Makris and
 Vassiliou's frame, pulses, rocking, sliding); Coulomb's law for a block that only slides.
 """
 
-from __future__ import annotations
-
 import csv
 import json
 import math

@@ -1,7 +1,5 @@
 """Drawings to scale: what is built, lines of thrust in balance, words where they belong."""
 
-from __future__ import annotations
-
 import io
 import math
 import re

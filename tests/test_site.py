@@ -1,7 +1,5 @@
 """The pages as a site: built without a broken link, drawn in Chromium without the network."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Fill as soil, held against integrals and linear programmes of a bridge put together apart."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

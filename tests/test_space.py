@@ -1,7 +1,5 @@
 """Blocks in space, held to published cases, closed forms, own programmes and symmetry."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

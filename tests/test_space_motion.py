@@ -1,7 +1,5 @@
 """Blocks in space that move, held to known cases, closed forms, conservation and the plane."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

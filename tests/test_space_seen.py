@@ -1,7 +1,5 @@
 """What is seen of blocks in space: joints in colour, forces, models, a page to turn around."""
 
-from __future__ import annotations
-
 import base64
 import csv
 import json

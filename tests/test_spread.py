@@ -1,7 +1,5 @@
 """Supports that move slowly: known values, closed forms, and two methods on each other."""
 
-from __future__ import annotations
-
 import json
 import math
 from itertools import combinations

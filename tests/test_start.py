@@ -1,7 +1,5 @@
 """What a command loads: nothing that its answer does not need."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -3,8 +3,6 @@
 Truth: the load factor of limit analysis under forces across, in units of the weights.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

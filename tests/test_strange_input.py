@@ -1,7 +1,5 @@
 """Input that no one means: what is accepted has bounds, and they are said in one line."""
 
-from __future__ import annotations
-
 import io
 import math
 import os

@@ -1,7 +1,5 @@
 """No name of a stranger is obeyed by a terminal, a page, a drawing, a sheet or a viewer."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

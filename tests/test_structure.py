@@ -1,7 +1,5 @@
 """Structure files: the corpus reads, records read back, broken files get one line."""
 
-from __future__ import annotations
-
 import copy
 import json
 import math

@@ -1,7 +1,5 @@
 """Stills of structures: what is drawn is what is there, and forces are those of statics."""
 
-from __future__ import annotations
-
 import io
 import math
 import re

@@ -1,7 +1,5 @@
 """Films of structures: blocks where they are, on supports, in words of any structure."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Structures on the command line: asked, bracketed, let go, and refused in one line."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The referee: its scenes, their answers by other means, and what it takes from strangers."""
 
-from __future__ import annotations
-
 import json
 import math
 import runpy

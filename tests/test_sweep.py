@@ -1,7 +1,5 @@
 """Sweeps ask what they are told to, answer as the single questions do, and lose no row."""
 
-from __future__ import annotations
-
 import json
 import math
 import sys

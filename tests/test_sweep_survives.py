@@ -1,7 +1,5 @@
 """Sweeps that are killed, run out of disk or meet each other lose no row."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -5,8 +5,6 @@ computed apart; many voussoirs converge to it, with both weights and in every mo
 nothing breaks at the ends of the ranges.
 """
 
-from __future__ import annotations
-
 import math
 
 import exact

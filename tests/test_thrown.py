@@ -5,8 +5,6 @@ Ballistics; heights after impacts with restitution (e^2 each); Coulomb's law for
 periods that go with 1/sqrt(g); and the least friction of a block on ground that falls away.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

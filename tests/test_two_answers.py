@@ -1,7 +1,5 @@
 """How far friction lets arches move that can rest: a closed form, rows, figure."""
 
-from __future__ import annotations
-
 import math
 from importlib import import_module
 from pathlib import Path

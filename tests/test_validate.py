@@ -1,7 +1,5 @@
 """Validation rows say what was found and mark misses; what people give and are told."""
 
-from __future__ import annotations
-
 import importlib
 import json
 import math

@@ -1,7 +1,5 @@
 """Films show where the blocks are, in the order they hide each other, and are written whole."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

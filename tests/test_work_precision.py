@@ -1,7 +1,5 @@
 """The speed-accuracy chart: its fronts, and errors and work that are true."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import math

@@ -4,8 +4,6 @@ The steps are counted and made to fail one by one, as SQLite's tests do
 (https://www.sqlite.org/testing.html, "I/O error testing").
 """
 
-from __future__ import annotations
-
 import ast
 import io
 import math

@@ -1,7 +1,5 @@
 """Colours as the colour-blind and a grey printer show them, and how far apart they look."""
 
-from __future__ import annotations
-
 from itertools import combinations
 from typing import Any
 

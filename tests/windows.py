@@ -1,7 +1,5 @@
 """Windows of a browser that tests share."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from typing import Any

@@ -3,8 +3,6 @@
 Tests that ask it take it from here, so that one file says where it is.
 """
 
-from __future__ import annotations
-
 from blocksim.arch.modes import observed_mode as observed_mode
 from blocksim.blocks.joints import classify as classify
 from blocksim.blocks.joints import joint_motion as joint_motion

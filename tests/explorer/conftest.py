@@ -1,7 +1,5 @@
 """The map explorer, opened in a browser."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator
 from typing import Any

@@ -1,7 +1,5 @@
 """The explorer's second view: any blocks, judged in the page and dragged."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

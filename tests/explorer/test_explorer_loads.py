@@ -1,7 +1,5 @@
 """Loads and fill that are laid on the arch beside the map, held to Python."""
 
-from __future__ import annotations
-
 import math
 import re
 from typing import Any

@@ -1,7 +1,5 @@
 """The map explorer in use in a browser."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import re

@@ -1,7 +1,5 @@
 """What the map explorer computes in a browser: its numbers and its mechanisms."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

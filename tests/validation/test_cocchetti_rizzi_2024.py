@@ -14,8 +14,6 @@ solver finds its thickness from one moment balance between two touching sections
 are written out here from the statics of the half-arch, the weight summed by quadrature.
 """
 
-from __future__ import annotations
-
 import math
 import tomllib
 from pathlib import Path

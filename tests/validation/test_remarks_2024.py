@@ -5,8 +5,6 @@ thickness that a thrust asks for is one moment balance: nothing of it is blocksi
 which is what it is compared with. blocksim's exact statics of voussoirs are another witness.
 """
 
-from __future__ import annotations
-
 import math
 import tomllib
 from itertools import combinations

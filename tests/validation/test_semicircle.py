@@ -21,8 +21,6 @@ is that of the same moment balances with a wrong inner hinge; 0.1075 at 54.5 deg
 Milankovitch's, with the weight at the centroids of the true voussoirs.
 """
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -6,8 +6,6 @@ collapse, and let go they must move. None of it rests on arches, on limit analys
 one engine's word for another's.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 
