@@ -312,10 +312,10 @@ def test_a_parquet_table_holds_the_same_rows(
     assert len(table) == len(rows) == 192 + 1 + 192
     for row, held in zip(rows, table, strict=True):
         assert row.pop("parameters") is None
+        settings = {name: held.pop(name) for name in list(held) if name.startswith("settings.")}
+        given = {f"settings.{name}": each for name, each in (row.pop("settings") or {}).items()}
+        assert {name: each for name, each in settings.items() if each is not None} == given
         assert list(held) == list(row)
-        settings = held["settings"]
-        if settings is not None:
-            held["settings"] = {k: value for k, value in settings.items() if value is not None}
         assert held == {**row, "mu": float(str(row["mu"]))}
 
 
@@ -393,6 +393,9 @@ def test_a_tower_tilts_least_far_towards_its_shorter_side(tmp_path: Path) -> Non
     text = 'kind = "tower"\nblocks = 2\nturn_deg = 0\noffset = 0\nmu = 4\nmethod = "limit"\n'
     asked = design_of(tmp_path, f'{text}over = "tilt"\nazimuth_deg = [0, 30, 60, 90, -135]')
     sweep(asked, tmp_path / "rows")
+    write_csv(tmp_path / "rows", tmp_path / "rows.csv")
+    told = [float(row["azimuth_deg"]) for row in csv_rows(tmp_path / "rows.csv")]
+    assert sorted(told) == [-135, 0, 30, 60, 90]
     for row in read_rows(tmp_path / "rows"):
         towards = math.radians(float(str(row["azimuth_deg"])))
         # Length, width and height of the two are 1, 0.6 and 0.6 m.

@@ -56,6 +56,7 @@ class SweepRow(TypedDict):
     parameters: dict[str, object] | None
     load: Number
     tilt_deg: Number
+    azimuth_deg: Number
     amplitude_g: Number
     duration_s: Number
     over: Text

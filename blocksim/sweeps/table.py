@@ -2,6 +2,7 @@
 
 Columns are the keys of a row. The unit ends the name of a number that has one: `tilt_deg`,
 `wall_s`, and of kinds of structures `radius_m`, a column for each parameter that any row has.
+Each setting has one, too, such as `settings.step`. A missing value is null, or an empty cell.
 `low`, `high` and `limit` of a bracket are in what its `unit` says.
 """
 
@@ -38,7 +39,7 @@ def require_parquet() -> None:
 def write_parquet(folder: AnyPath, path: AnyPath) -> None:
     """Write the rows of a sweep as a Parquet table, in the order of `read_rows`.
 
-    Infinite friction is a number, and settings that were not given are null.
+    Infinite friction is a number.
 
     Parameters
     ----------
@@ -61,8 +62,10 @@ def write_parquet(folder: AnyPath, path: AnyPath) -> None:
     arrow: Any = pyarrow
     tables: Any = parquet
     columns = _columns(folder)
-    schema = _schema(arrow, columns)
-    rows = (_flat(row) for row in read_rows(folder))
+    schema = arrow.schema(
+        [(name, arrow.type_for_alias(kind)) for name, kind in columns.items()]
+    )
+    rows = _rows(folder, columns)
 
     def write(file: BinaryIO) -> None:
         with tables.ParquetWriter(file, schema, compression="zstd") as table:
@@ -75,8 +78,7 @@ def write_parquet(folder: AnyPath, path: AnyPath) -> None:
 def write_csv(folder: AnyPath, path: AnyPath) -> None:
     """Write the rows of a sweep as CSV, in the order of `read_rows`: for `pandas.read_csv`.
 
-    A missing value is an empty cell, infinity is `inf`. Each setting has a column of its own,
-    such as `settings.step`.
+    Infinity is `inf`.
 
     Parameters
     ----------
@@ -90,8 +92,9 @@ def write_csv(folder: AnyPath, path: AnyPath) -> None:
     InputError, MachineError
         If a file is not of a sweep, or the table cannot be written.
     """
-    names, cells = _cells(folder)
-    write_whole(path, lambda file: write_sheet(file, names, cells))
+    columns = _columns(folder)
+    cells = (list(row.values()) for row in _rows(folder, columns))
+    write_whole(path, lambda file: write_sheet(file, list(columns), cells))
 
 
 def to_pandas(rows: AnyPath | Iterable[object]) -> Any:
@@ -127,26 +130,11 @@ def to_pandas(rows: AnyPath | Iterable[object]) -> Any:
     """
     require_library("pandas", "a table of pandas", "pandas")
     if isinstance(rows, str | os.PathLike):
-        names, cells = _cells(rows)
-        return _pandas.DataFrame(list(cells), columns=names)
+        columns = _columns(rows)
+        return _pandas.DataFrame(list(_rows(rows, columns)), columns=list(columns))
     return _pandas.DataFrame(
         [each if isinstance(each, Mapping) else asdict(cast("Any", each)) for each in rows]
     )
-
-
-def _cells(folder: AnyPath) -> tuple[list[str], Iterator[list[object]]]:
-    """Names of the columns of a sweep, each setting in one of its own, and their rows."""
-    settings = [f"settings.{name}" for name in SETTINGS]
-    names: list[str] = []
-    for name in _columns(folder):
-        names += settings if name == "settings" else [name]
-
-    def cells(row: Mapping[str, object]) -> list[object]:
-        given = cast("dict[str, object]", row.get("settings") or {})
-        found = _flat(row) | {f"settings.{name}": value for name, value in given.items()}
-        return [found.get(name) for name in names]
-
-    return names, map(cells, read_rows(folder))
 
 
 def _columns(folder: AnyPath) -> dict[str, str]:
@@ -156,10 +144,15 @@ def _columns(folder: AnyPath) -> dict[str, str]:
         for name in _parameters(row):
             known = _known(str(row["kind"]), name)
             parameters[_column(name, known)] = _type_of(known)
+    settings = {
+        f"settings.{name}": "int64" if each.whole else "double"
+        for name, each in SETTINGS.items()
+    }
+    inside = {"parameters": parameters, "settings": settings}
     columns: dict[str, str] = {}
     for name, kind in COLUMNS.items():
-        columns |= parameters if name == "parameters" else {name: kind}
-    return columns | parameters
+        columns |= inside.get(name, {name: kind})
+    return columns
 
 
 def _parameters(row: Mapping[str, object]) -> dict[str, object]:
@@ -197,25 +190,16 @@ def _column(name: str, known: Field | None) -> str:
     return f"{name.removesuffix(f'_{known.unit}')}_{known.unit}"
 
 
-def _flat(row: Mapping[str, object]) -> dict[str, object]:
-    """Return a row with its numbers as such, and with its parameters as columns."""
-    found = dict(row)
-    for key in NUMBERS:
-        if found.get(key) is not None:
-            found[key] = float(str(found[key]))
-    for name, value in _parameters(found).items():
-        known = _known(str(row["kind"]), name)
-        found[_column(name, known)] = _held(value, _type_of(known))
-    found.pop("parameters", None)
-    return found
-
-
-def _schema(arrow: Any, columns: dict[str, str]) -> Any:
-    names = {*columns.values(), "int64", "double"} - {"settings"}
-    types = {kind: arrow.type_for_alias(kind) for kind in names}
-    fields = [
-        (name, types["int64" if setting.whole else "double"])
-        for name, setting in SETTINGS.items()
-    ]
-    types["settings"] = arrow.struct(fields)
-    return arrow.schema([(key, types[kind]) for key, kind in columns.items()])
+def _rows(folder: AnyPath, columns: Iterable[str]) -> Iterator[dict[str, object]]:
+    """Give rows with their numbers as such, and with parameters and settings as columns."""
+    for row in read_rows(folder):
+        found: dict[str, Any] = dict(row)
+        for key in NUMBERS:
+            if found[key] is not None:
+                found[key] = float(found[key])
+        for name, value in _parameters(row).items():
+            known = _known(str(row["kind"]), name)
+            found[_column(name, known)] = _held(value, _type_of(known))
+        given: dict[str, float] = found["settings"] or {}
+        found |= {f"settings.{name}": value for name, value in given.items()}
+        yield {name: found.get(name) for name in columns}
