@@ -20,11 +20,11 @@ from blocksim.report import tables
 from blocksim.report.tables import read_points, write_chart
 from blocksim.simulation.motion import QUIET
 from blocksim.studies import refinement
-from blocksim.studies.chart import ChartArch, Point, front, measure
+from blocksim.studies.chart import Point, front, measure
 from blocksim.studies.refinement import REFINEMENTS, let_go, look
 
-SMALL = ChartArch(name="small: 90 deg", half_angle=math.pi / 2, mu=0.7, voussoirs=9)
-SLIDING = ChartArch(name="sliding: 125 deg", half_angle=math.radians(125), mu=0.9, voussoirs=10)
+SMALL = Arch(half_angle=math.pi / 2, eta=1.0, voussoirs=9), 0.7
+SLIDING = Arch(half_angle=math.radians(125), eta=1.0, voussoirs=10), 0.9
 
 
 def point(method: str, error: float, *seconds: float, knob: str = "tolerance") -> Point:
@@ -43,17 +43,16 @@ def point(method: str, error: float, *seconds: float, knob: str = "tolerance") -
     )
 
 
-def least(case: ChartArch, voussoirs: int) -> float:
-    return known(case.half_angle, case.mu, voussoirs).eta_limit
+def least(case: tuple[Arch, float], voussoirs: int) -> float:
+    return known(case[0].half_angle, case[1], voussoirs).eta_limit
 
 
-def arch(case: ChartArch, ratio: float) -> Arch:
-    eta = ratio * least(case, case.voussoirs)
-    return Arch(half_angle=case.half_angle, eta=eta, voussoirs=case.voussoirs)
+def arch(case: tuple[Arch, float], ratio: float) -> Arch:
+    return replace(case[0], eta=ratio * least(case, case[0].voussoirs))
 
 
-def off_theory(case: ChartArch, voussoirs: int) -> float:
-    continuous = known(case.half_angle, case.mu).eta_theory
+def off_theory(case: tuple[Arch, float], voussoirs: int) -> float:
+    continuous = known(case[0].half_angle, case[1]).eta_theory
     return abs(least(case, voussoirs) / continuous - 1)
 
 
@@ -82,7 +81,7 @@ def test_brackets_hold_the_exact_value_and_narrow(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fewer(monkeypatch, "tolerance", direct=(1e-2, 1e-7), pymunk=(1e-2, 1e-3))
-    points = measure([SMALL], ["direct", "pymunk"], ["tolerance"])
+    points = measure({"small": SMALL}, ["direct", "pymunk"], ["tolerance"])
     assert len(points) == 4
     for each in points:
         # The farther end of a bracket that holds the exact value.
@@ -105,7 +104,7 @@ def test_an_arch_of_n_voussoirs_nears_the_continuous_one_like_one_over_n_squared
         ]
         for coarse, fine in itertools.pairwise(worst):
             assert coarse / fine == pytest.approx(4, rel=0.3)
-    points = measure([SMALL], ["limit"], ["voussoirs"], quick=True)
+    points = measure({"small": SMALL}, ["limit"], ["voussoirs"], quick=True)
     assert [p.value for p in points] == [7, 27, 101]
     assert [p.error for p in points] == [off_theory(SMALL, n) for n in (7, 27, 101)]
 
@@ -114,14 +113,14 @@ def test_an_arch_of_n_voussoirs_nears_the_continuous_one_like_one_over_n_squared
 def test_work_is_contacts_times_sweeps_times_steps(method: str) -> None:
     """What stands is watched to the end."""
     simulation = Simulation.of(
-        CircularArch.of(arch(SMALL, 1.5), SMALL.mu).problem(),
+        CircularArch.of(arch(SMALL, 1.5), SMALL[1]).problem(),
         method,
         settings={"step": 1 / 480, "sweeps": 20},
     )
     seen = let_go(simulation)
     assert seen.verdict is Verdict.STANDS
     assert seen.work == ENGINES[method].contacts * 10 * 20 * QUIET * 480
-    held = look(arch(SMALL, 1.5), SMALL.mu, method, "tolerance", 1e-2)
+    held = look(arch(SMALL, 1.5), SMALL[1], method, "tolerance", 1e-2)
     assert held.work % (ENGINES[method].contacts * 10) == 0
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from statistics import median
 from typing import Literal, NamedTuple
@@ -34,16 +34,8 @@ LONG = 20.0
 """Processor time above which a bracket is not repeated, and no finer setting is tried [s]."""
 
 Cost = Literal["time", "work"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class ChartArch:
-    """An arch of the chart, by its half-angle [rad]."""
-
-    name: str
-    half_angle: float
-    mu: float
-    voussoirs: int
+Cases = Mapping[str, tuple[Arch, float]]
+"""Arches of any thickness, each with its friction, by name."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,7 +75,7 @@ class Point:
         return REFINEMENTS[self.knob].against
 
 
-def cases(*, quick: bool) -> tuple[ChartArch, ...]:
+def cases(*, quick: bool) -> Cases:
     """Return arches spread over the map, hard ones too, or small ones if quick."""
     chosen = (
         (("semicircle", 90, 0.7, 11), ("sliding shoulder", 125, 0.9, 10))
@@ -96,19 +88,17 @@ def cases(*, quick: bool) -> tuple[ChartArch, ...]:
             ("long", 90, 0.7, 101),
         )
     )
-    return tuple(
-        ChartArch(
-            name=f"{name}: {degrees} deg, mu {mu}, n {count}",
-            half_angle=math.radians(degrees),
-            mu=mu,
-            voussoirs=count,
+    return {
+        f"{name}: {degrees} deg, mu {mu}, n {count}": (
+            Arch(half_angle=math.radians(degrees), eta=1.0, voussoirs=count),
+            mu,
         )
         for name, degrees, mu, count in chosen
-    )
+    }
 
 
 def measure(
-    chosen: Sequence[ChartArch],
+    chosen: Cases,
     methods: Iterable[str] | None = None,
     knobs: Iterable[str] = tuple(REFINEMENTS),
     *,
@@ -122,7 +112,7 @@ def measure(
     asked = [
         (case, knob, name)
         for knob in knobs
-        for case in chosen[: REFINEMENTS[knob].arches]
+        for case in list(chosen)[: REFINEMENTS[knob].arches]
         for name in names
         if name in REFINEMENTS[knob].values
     ]
@@ -130,8 +120,9 @@ def measure(
     for done, (case, knob, name) in enumerate(asked):
         values = REFINEMENTS[knob].values[name]
         for value in values[QUICK] if quick else values:
-            progress(done / len(asked), f"{case.name}, {name}, {knob} {value:.3g}")
-            points.append(_measured(case, name, knob, value, 1 if quick else REPEATS))
+            progress(done / len(asked), f"{case}, {name}, {knob} {value:.3g}")
+            repeats = 1 if quick else REPEATS
+            points.append(_measured(case, *chosen[case], name, knob, value, repeats))
             if points[-1].time > LONG:
                 break
     return points
@@ -167,12 +158,14 @@ class _Found(NamedTuple):
     work: int = 0
 
 
-def _measured(case: ChartArch, method: str, knob: str, value: float, repeats: int) -> Point:
+def _measured(
+    case: str, arch: Arch, mu: float, method: str, knob: str, value: float, repeats: int
+) -> Point:
     """Bracket one arch by one method with one setting, again and again."""
-    built = replace(case, voussoirs=int(value)) if knob == "voussoirs" else case
-    exact = truth = _exact(built)
+    built = replace(arch, voussoirs=int(value)) if knob == "voussoirs" else arch
+    exact = truth = _exact(built, mu)
     if REFINEMENTS[knob].against == "theory":
-        truth = theory.least_thickness(case.half_angle, case.mu).eta
+        truth = theory.least_thickness(arch.half_angle, mu).eta
     if exact is None or truth is None:
         message = "an arch that nothing lets stand has no error to measure"
         raise ValueError(message)
@@ -182,15 +175,15 @@ def _measured(case: ChartArch, method: str, knob: str, value: float, repeats: in
     while len(wall_s) < repeats and max(processor_s, default=0.0) <= LONG:
         wall, processor = time.perf_counter(), time.process_time()
         if method == "limit":
-            eta = _exact(built)
+            eta = _exact(built, mu)
             found = _Found(eta, eta)
         else:
-            found = _bracketed(built, exact * START, method, knob, value)
+            found = _bracketed(built, mu, exact * START, method, knob, value)
         processor_s.append(time.process_time() - processor)
         wall_s.append(time.perf_counter() - wall)
     ends = found.low, found.high
     return Point(
-        case=case.name,
+        case=case,
         method=method,
         knob=knob,
         value=value,
@@ -204,7 +197,9 @@ def _measured(case: ChartArch, method: str, knob: str, value: float, repeats: in
     )
 
 
-def _bracketed(case: ChartArch, start: float, method: str, knob: str, value: float) -> _Found:
+def _bracketed(
+    arch: Arch, mu: float, start: float, method: str, knob: str, value: float
+) -> _Found:
     """Bisection for the least thickness of one arch by an engine."""
     finest = METHODS[method].finest
     tol = {"tolerance": value, "voussoirs": finest}.get(knob, TOL)
@@ -212,8 +207,7 @@ def _bracketed(case: ChartArch, start: float, method: str, knob: str, value: flo
 
     def judge(eta: float) -> Answer:
         nonlocal work
-        arch = Arch(half_angle=case.half_angle, eta=eta, voussoirs=case.voussoirs)
-        seen = look(arch, case.mu, method, knob, value)
+        seen = look(replace(arch, eta=eta), mu, method, knob, value)
         work += seen.work
         return Answer(seen.verdict, seen.acceleration)
 
@@ -223,6 +217,6 @@ def _bracketed(case: ChartArch, start: float, method: str, knob: str, value: flo
     return _Found(search.low, search.high, search.undecided, work)
 
 
-def _exact(case: ChartArch) -> float | None:
+def _exact(arch: Arch, mu: float) -> float | None:
     """Return the least thickness by limit analysis."""
-    return limit.least_thickness(case.half_angle, case.mu, case.voussoirs).eta
+    return limit.least_thickness(arch.half_angle, mu, arch.voussoirs).eta
