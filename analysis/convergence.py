@@ -96,16 +96,10 @@ def followed(
         last = error
 
 
-def motions() -> Iterator[Motion]:
-    """Give every motion."""
-    yield thrown()
-    yield stopped()
-    for impacts in IMPACTS:
-        yield rocking(impacts)
-    yield hinged()
-    yield toppling()
-    for impacts in (1, 3):
-        yield framed(impacts)
+def motions() -> tuple[Motion, ...]:
+    """Return every motion."""
+    rocks = map(rocking, IMPACTS)
+    return (thrown(), stopped(), *rocks, hinged(), toppling(), *map(framed, (1, 3)))
 
 
 if __name__ == "__main__":
