@@ -2,6 +2,7 @@
 
 import json
 import math
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, cast
 
@@ -15,7 +16,16 @@ from hypothesis import strategies as st
 from own_bridge import thrusts_of_half
 from running import answered, inside
 
-from blocksim import InputError, Reading, bracket, load_structure
+from blocksim import (
+    CircularArch,
+    InputError,
+    Problem,
+    Reading,
+    Rubble,
+    Wall,
+    bracket,
+    load_structure,
+)
 from blocksim.reading.curves import arc, bezier, ellipse
 from blocksim.reading.loops import loops_of
 
@@ -175,6 +185,33 @@ def test_voussoirs_that_share_lines_are_told_from_the_opening() -> None:
     assert not wrong
     areas = [abs(area([complex(*each) for each in loop.corners])) for loop in loops]
     assert areas == pytest.approx([2.0] * 4)
+
+
+@given(kind=st.sampled_from(["wall", "rubble", "arch"]), seed=st.integers(0, 10**6))
+def test_blocks_drawn_around_by_polylines_and_lines_are_put_together(
+    kind: str, seed: int
+) -> None:
+    """Each a polyline of some of its sides, from anywhere, and the others as lines."""
+    random = np.random.default_rng(seed)
+    many = int(random.integers(3, 20))
+    problem: Problem = {
+        "wall": lambda: Wall(friction=0.7, courses=2 + many // 4),
+        "rubble": lambda: Rubble(friction=0.7, stones=5 + many, seed=seed),
+        "arch": lambda: CircularArch(friction=0.7, left_deg=80, right_deg=70, voussoirs=many),
+    }[kind]().problem()
+    blocks = [each.vertices for each in problem.assembly.blocks if random.random() < 0.8]
+    lines = []
+    for corners in blocks:
+        turned = np.roll(corners, int(random.integers(len(corners))), axis=0).tolist()
+        around = [(x, y) for x, y in [*turned, turned[0]]]
+        first = int(random.integers(1, len(corners)))
+        lines.append(around[: first + 1])
+        sides = list(pairwise(around[first:]))
+        lines += [list(sides[k]) for k in random.permutation(len(sides))]
+    loops, wrong = loops_of(lines) if lines else ([], [])
+    assert not wrong
+    areas = sorted(shapely.Polygon(loop.corners).area for loop in loops)
+    assert areas == pytest.approx(sorted(shapely.Polygon(each).area for each in blocks))
 
 
 def area(path: list[complex]) -> float:

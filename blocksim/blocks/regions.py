@@ -48,6 +48,12 @@ def overlap_each_other(parts: Sequence[Array], tolerance: float) -> bool:
     return twice > tolerance * around
 
 
+def between(lines: Sequence[Sequence[tuple[float, float]]]) -> list[list[tuple[float, float]]]:
+    """Return the outlines of the regions between lines that meet at their ends only."""
+    found: Any = shapely.polygonize([shapely.LineString(line) for line in lines])
+    return [list(region.exterior.coords)[:-1] for region in found.geoms]
+
+
 def hull(parts: Sequence[Array]) -> Array:
     """Return the convex hull of polygons, counter-clockwise; of what has no width an end."""
     return _corners(shapely.MultiPoint(np.concatenate(parts)).convex_hull)

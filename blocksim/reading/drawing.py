@@ -23,7 +23,7 @@ from blocksim.common.errors import MISSING, InputError
 from blocksim.common.words import printable
 from blocksim.reading.asked import UNITS, Reading, Unit
 from blocksim.reading.curves import Corners
-from blocksim.reading.loops import MOST_LINES, loops_of
+from blocksim.reading.loops import loops_of
 
 LARGEST_DRAWING = 20_000_000
 """Bytes; a larger drawing is not read."""
@@ -215,8 +215,6 @@ def _closed(
     """Put lines together to outlines, named by the first of their lines."""
     if not drawn:
         return [], [], 0.0
-    few = len(drawn) <= MOST_LINES
-    require(few, "lines", len(drawn), f"at most {MOST_LINES} on a layer that is read")
     loops, wrong = loops_of([shape.corners for shape in drawn], snap)
     found: list[Shape] = []
     for loop in loops:
