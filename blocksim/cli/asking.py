@@ -77,13 +77,13 @@ def check(
     Of a folder of structures, or of JSON lines on standard input (-), a line of JSON for each,
     by limit analysis. Of --cases, a table with the governing case first, whose exit code it is.
     """
+    how = Options(method=method, settings=settings_of(settings), reduce=reduce)
     if cases is not None:
         from blocksim.cli.many import asked_of_cases
 
         refuse({"joint": joint, "must_rest": must_rest, "proof": proof}, why=OF_ONE)
-        options = Options(method=method, settings=settings_of(settings), reduce=reduce)
-        told = asked_of_cases(cases, scene, given, loading, options, spatial=spatial)
-        answer_with(lambda: cases_record(told), lambda: cases_lines(told), as_json=as_json)
+        told = asked_of_cases(cases, scene, given, loading, how, spatial=spatial)
+        answer_with(cases_record, cases_lines, told, as_json=as_json)
         raise click.exceptions.Exit(EXIT_CODES[told.governing.answer.verdict])
     if scene is not None and is_many(scene):
         from blocksim.cli.many import check_each
@@ -99,23 +99,12 @@ def check(
         refuse({"joint": joint, "must_rest": must_rest})
     at = _place_of(joint, problem)
     with named_options(), progress() as report:
-        answer = ask_check(
-            problem,
-            method=method,
-            settings=settings_of(settings),
-            reduce=reduce,
-            must_rest=must_rest,
-            progress=report,
-        )
+        answer = ask_check(problem, must_rest=must_rest, **{**how, "progress": report})
         if at is not None:
             report(1.0, "thrust")
         carried = answer.carried if at is None else answer.carried_at(at)
     write_proof(answer.method, () if answer.proof is None else (answer.proof,), proof)
-    answer_with(
-        lambda: check_record(answer, carried),
-        lambda: check_lines(answer, carried),
-        as_json=as_json,
-    )
+    answer_with(check_record, check_lines, answer, carried, as_json=as_json)
     raise click.exceptions.Exit(EXIT_CODES[answer.verdict])
 
 
@@ -178,7 +167,7 @@ def bracket(
     write_proof(answer.method, () if proof is None else answer.proofs, proof)
     if crossed.out is not None and not problem.in_space:
         write_curves(problem, answer.over, crossed.out, silent=as_json)
-    answer_with(lambda: bracket_record(answer), lambda: bracket_lines(answer), as_json=as_json)
+    answer_with(bracket_record, bracket_lines, answer, as_json=as_json)
 
 
 def _answer(
@@ -263,7 +252,7 @@ def cross(
     require(problem.weighed, "--unit-weight", "none", allowed)
     with named_options(), progress() as report:
         found = crossing(problem, vehicle_of(crossed.vehicle or ""), progress=report)
-    answer_with(lambda: crossing_record(found), lambda: crossing_lines(found), as_json=as_json)
+    answer_with(crossing_record, crossing_lines, found, as_json=as_json)
 
     def draw(file: BinaryIO) -> None:
         from blocksim.view.sheet import sheet_of

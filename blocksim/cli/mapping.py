@@ -53,7 +53,7 @@ def draw_map(
         require(out is None, "--out", str(out), "left out with --table or --json")
         from blocksim.report.maptable import map_lines, map_record
 
-        answer_with(lambda: map_record(weight), lambda: map_lines(weight), as_json=as_json)
+        answer_with(map_record, map_lines, weight, as_json=as_json)
         return
     require_given(out=out)
     out = out or Path()

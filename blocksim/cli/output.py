@@ -90,16 +90,16 @@ def write_files(
 
 
 def answer_with(
-    record: Callable[[], Mapping[str, object]],
-    lines: Callable[[], list[str]],
-    *,
+    record: Callable[..., Mapping[str, object]],
+    lines: Callable[..., list[str]],
+    *answer: object,
     as_json: bool,
 ) -> None:
     """Print an answer as one JSON object or as lines, of which only one is made."""
     if as_json:
-        click.echo(printable(json_text(record())))
+        click.echo(printable(json_text(record(*answer))))
     else:
-        say(*lines())
+        say(*lines(*answer))
 
 
 def say(*lines: str) -> None:

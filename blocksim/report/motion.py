@@ -61,14 +61,6 @@ class Piece(NamedTuple):
     moved: str
 
 
-class Arrow(NamedTuple):
-    """A force: what it is (a class of the page's style), its shaft and its head."""
-
-    what: str
-    shaft: str
-    head: str
-
-
 @dataclass(frozen=True, kw_only=True)
 class Drawing:
     """Everything a page needs to draw blocks and to move them.
@@ -77,7 +69,8 @@ class Drawing:
     `rest`: Outlines at rest, of what moves.
     `supports`: Active joints' faces that stay.
     `thrust`: Lines of thrust at rest.
-    `arrows`: Forces besides gravity, and gravity where it does not pull straight down.
+    `arrows`: Forces besides gravity, and gravity where it does not pull straight down: what
+        each is (a class of the page's style), its shaft and its head.
     `dot`: Radius of the mark of a hinge.
     `frames`: JSON: for each pose, for each piece, its shift x, y and turn [deg].
     `enlarged`: How many times larger than it is the motion is drawn; None where none is.
@@ -89,7 +82,7 @@ class Drawing:
     footings: tuple[str, ...]
     supports: tuple[Mark, ...]
     thrust: tuple[str, ...]
-    arrows: tuple[Arrow, ...]
+    arrows: tuple[tuple[str, str, str], ...]
     dot: float
     frames: str
     enlarged: float | None
@@ -244,11 +237,11 @@ def _depth(corners: Array, point: Array, way: Array) -> float:
     return float(far[meets].max(initial=0.0))
 
 
-def _arrow(what: str, line: Array) -> Arrow:
+def _arrow(what: str, line: Array) -> tuple[str, str, str]:
     tail, tip = line
     size = min(HEAD, float(np.hypot(*(tip - tail))) / 3)
     shaft, head = arrow(tail, tip, NOTHING, size / TIP)
-    return Arrow(what, _points(shaft.points), _points(head.points))
+    return what, _points(shaft.points), _points(head.points)
 
 
 def _place(point: Array) -> tuple[float, float]:
