@@ -19,7 +19,7 @@ from blocksim.blocks.entries import LoadEntry, listed
 from blocksim.blocks.given import Body
 from blocksim.blocks.loads import LoadsOf
 from blocksim.blocks.problem import Load, Problem
-from blocksim.cli.given import Given, Loading
+from blocksim.cli.given import Given, Loading, given_of
 from blocksim.cli.options import named_options, option_of
 from blocksim.cli.output import progress
 from blocksim.cli.subject import STREAM, anything_asked, is_many
@@ -128,8 +128,7 @@ def asked_of_cases(
     found: list[Case] = []
     for at, entry in enumerate(written.case):
         field = f"case[{at}]"
-        once = entry.name not in {each.name for each in found}
-        if not once:
+        if entry.name in {each.name for each in found}:
             raise InputError(f"{field}.name", entry.name, "another than before", where=where)
         try:
             found.append(_case(entry, written.factors or {}, scene, given, loading, spatial))
@@ -148,12 +147,14 @@ def _case(
     loading: Loading, spatial: bool,
 ) -> Case:  # fmt: skip
     """Put on a structure what acts in a case."""
-    own = {each.name: getattr(entry, each.name) for each in fields(Loading)}
-    _require_ranges(own)
-    acting = {name: value for name, value in own.items() if value is not None}
+    acting: dict[str, Any] = given_of(entry, *(each.name for each in fields(Loading)))
+    for name, value in acting.items():
+        # As options check themselves.
+        if (numbers := fields_of(Loading)[name].range) is not None:
+            numbers.require(option_of(name), value)
     known = {**factors, **(entry.factors or {})}
+    names = [each.name for each in fields(Factors)]
     for name in known:
-        names = [each.name for each in fields(Factors)]
         require(name in names, f"factors.{name}", known[name], f"one of {', '.join(names)}")
     problem = anything_asked(
         scene, given, replace(loading, **acting), spatial=spatial, thick=True
@@ -186,11 +187,3 @@ def _under(problem: Problem, kind: str, loads: list[LoadEntry], *, with_load: bo
         return replace(problem, dead=(*problem.dead, *found))
     factor = problem.load if problem.live or not with_load else 1.0
     return replace(problem, live=tuple(found), road=(), load=factor or 1.0)
-
-
-def _require_ranges(own: Mapping[str, Any]) -> None:
-    """Check what options would check of themselves."""
-    known = fields_of(Loading)
-    for name, value in own.items():
-        if (numbers := known[name].range) is not None and value is not None:
-            numbers.require(option_of(name), value)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Generator, Mapping
+from collections.abc import Collection, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import fields
 from pathlib import PurePath
+from typing import cast
 
 from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES
@@ -91,8 +92,16 @@ def refuse(
     """Refuse options that are given and mean nothing here, in space by default."""
     for name, value in options.items():
         unset = value is None or value is False or name in known
-        shown = str(value) if isinstance(value, PurePath) else value
-        require(unset, option_of(name), shown, why)
+        require(unset, option_of(name), _as_given(value), why)
+
+
+def _as_given(value: object) -> object:
+    """Say a value of an option as it is given, a number as it is."""
+    if isinstance(value, list | tuple):
+        parts = map(_as_given, cast("Sequence[object]", value))
+        words = [f"{each:g}" if isinstance(each, float) else str(each) for each in parts]
+        return ("; " if isinstance(value, list) else " ").join(words)
+    return str(value) if isinstance(value, PurePath) else value
 
 
 def parameters_of(given: list[str] | None) -> dict[str, object]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, replace
-from typing import Any, cast
+from typing import Any
 
 from blocksim.arch.dimensions import require_unit_weight
 from blocksim.blocks.outlines import signed_area
@@ -21,7 +21,7 @@ from blocksim.blocks.road import (
 )
 from blocksim.blocks.shaking import SHAPES, Shaking, read_table
 from blocksim.blocks.soil import Soil, coefficients, resistance
-from blocksim.cli.given import SOIL, Given, Loading
+from blocksim.cli.given import SOIL, Given, Loading, given_of
 from blocksim.cli.options import named_options, option_of, refuse, require_given
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
@@ -69,37 +69,29 @@ def loaded(problem: Problem[Any], given: Given, loading: Loading) -> Problem[Any
 
 def _shaking(shaking: Shaking | None, loading: Loading) -> Shaking | None:
     """Shake the ground as the options say, which change what a file says."""
-    shape, amplitude, duration = loading.shake, loading.amplitude, loading.duration
+    shape, given = loading.shake, given_of(loading, "amplitude", "duration")
     if shape is not None and shape.endswith(".csv"):
         shaking = read_table(shape)
     elif shape is not None:
         shapes = ", ".join(SHAPES)
         require(shape in SHAPES, "--shake", shape, f"one of {shapes}, or a .csv file")
-        require_given(amplitude=amplitude, duration=duration)
-        shaking = Shaking(shape=shape, amplitude=amplitude or 0.0, duration=duration or 0.0)
-    for name, value in (("amplitude", amplitude), ("duration", duration)):
-        allowed = "left out, or --shake beside it: the ground is at rest"
-        require(value is None or shaking is not None, f"--{name}", value, allowed)
-    if shaking is not None and amplitude is not None:
-        shaking = replace(shaking, amplitude=amplitude)
-    if shaking is not None and duration is not None:
-        shaking = replace(shaking, duration=duration)
-    return shaking
+        large, long = loading.amplitude, loading.duration
+        require_given(amplitude=large, duration=long)
+        return Shaking(shape=shape, amplitude=large or 0.0, duration=long or 0.0)
+    if shaking is None:
+        refuse(given, why="left out, or --shake beside it: the ground is at rest")
+        return None
+    return replace(shaking, **given)
 
 
 def _filled(problem: Problem, loading: Loading, density: float) -> Problem:
     """Put fill on a structure: by its maker, where that knows it, else on what is uppermost."""
     height, heavy = loading.fill, loading.fill_unit_weight
-    filled = height is not None or road_of(problem) is not None
-    for name in SOIL:
-        value = getattr(loading, name)
-        allowed = "left out, or --fill beside it"
-        said = value if isinstance(value, float) else _said(value)
-        require(value is None or filled, option_of(name), said, allowed)
-    if heavy is not None:
+    if heavy is not None and height is not None:
         require_unit_weight("--fill-unit-weight", heavy)
-        allowed = "left out, or --fill beside it"
-        require(height is not None, "--fill-unit-weight", heavy, allowed)
+    if height is None:
+        names = SOIL if road_of(problem) is None else ["fill_unit_weight"]
+        refuse(given_of(loading, *names), why="left out, or --fill beside it")
     usual = density if problem.maker is None else problem.maker.unit_weight
     weight = usual if heavy is None else 1000 * heavy
     own = takes_fill(problem)
@@ -115,9 +107,9 @@ def _soil(loading: Loading, weight: float, height: float | None) -> Soil:
     """Return what the options say the fill is made of."""
     pressure, passive = loading.fill_pressure, loading.fill_passive
     angle, backing = loading.fill_friction_angle, loading.backing
-    allowed = "left out, or --fill-pressure or --fill-passive beside it"
-    needed = angle is None or pressure is not None or passive is not None
-    require(needed, "--fill-friction-angle", angle, allowed)
+    if pressure is None and passive is None:
+        why = "left out, or --fill-pressure or --fill-passive beside it"
+        refuse({"fill_friction_angle": angle}, why=why)
     turn = None if angle is None else math.radians(angle)
     return Soil(
         unit_weight=weight,
@@ -130,15 +122,6 @@ def _soil(loading: Loading, weight: float, height: float | None) -> Soil:
         pressure=(0.0, 0.0) if pressure is None else coefficients(pressure, turn),
         passive=(0.0, 0.0) if passive is None else resistance(passive, turn),
     )
-
-
-def _said(value: object) -> str:
-    """Say a value of an option as it is given."""
-    if isinstance(value, list):
-        return "; ".join(map(_said, cast("list[object]", value)))
-    if isinstance(value, tuple):
-        return " ".join(map(_said, cast("tuple[object, ...]", value)))
-    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def under_road(problem: Problem, loading: Loading) -> Problem:
