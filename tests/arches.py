@@ -49,6 +49,13 @@ ARCHES: dict[str, list[tuple[Any, ...]]] = {
 }
 """Half-angle [deg], mu, voussoirs, weight, and the mode a little below the least thickness."""
 
+_RADIUS = (4**2 + 3**2) / 6 + 0.45 / 2
+ENGINEERS = Arch(
+    half_angle=math.asin(4 / (_RADIUS - 0.225)), eta=0.45 / _RADIUS, voussoirs=31,
+    weight="sector", radius=_RADIUS,
+)  # fmt: skip
+"""Of 8 by 3 m clear, 0.45 m thick, by the chord theorem."""
+
 
 @cache
 def least(half_angle: float, mu: float, voussoirs: int = 27, weight: str = "centreline") -> Any:

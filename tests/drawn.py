@@ -8,6 +8,16 @@ import ezdxf
 
 Polygon = Sequence[tuple[float, float]]
 
+
+def square(x: float, y: float, wide: float = 1.0, tall: float = 1.0) -> list[list[float]]:
+    return [[x, y], [x + wide, y], [x + wide, y + tall], [x, y + tall]]
+
+
+def box(name: str, left: float, low: float, right: float, high: float) -> dict:
+    """A rectangular block of a structure file."""
+    return {"id": name, "vertices": square(left, low, right - left, high - low)}
+
+
 GROUND: Polygon = [(-1.0, -1.0), (7.0, -1.0), (7.0, 0.0), (-1.0, 0.0)]
 
 

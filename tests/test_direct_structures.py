@@ -94,24 +94,11 @@ def ladder(degrees: float) -> Problem:
     cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     foot, top, back = np.zeros(2), 4 * np.array([cos, sin]), 0.2 * np.array([-sin, cos])
     wall = [[top[0], 0], [top[0] + 1, 0], [top[0] + 1, 5], [top[0], 5]]
-    return structure_of(
-        {
-            "friction": 0.0,
-            "blocks": [
-                {"id": 0, "vertices": [[-4, -1], [6, -1], [6, 0], [-4, 0]], "fixed": True},
-                {"id": 1, "vertices": wall, "fixed": True},
-                {
-                    "id": 2,
-                    "vertices": [
-                        each.tolist() for each in (foot, top, top + back, foot + back)
-                    ],
-                    "centre": (top / 2).tolist(),
-                    "weight": 9.81,
-                    "inertia": 16 / 12,
-                },
-            ],
-        }
-    )
+    floor = {"id": 0, "vertices": [[-4, -1], [6, -1], [6, 0], [-4, 0]], "fixed": True}
+    corners = [each.tolist() for each in (foot, top, top + back, foot + back)]
+    bar = {"id": 2, "vertices": corners, "centre": (top / 2).tolist(), "weight": 9.81}
+    blocks = [floor, {"id": 1, "vertices": wall, "fixed": True}, {**bar, "inertia": 16 / 12}]
+    return structure_of({"friction": 0.0, "blocks": blocks})
 
 
 def test_a_smooth_ladder_leaves_its_wall_at_two_thirds_of_its_height() -> None:
@@ -152,12 +139,8 @@ def test_a_block_slides_along_the_whole_face_and_tips_at_its_end() -> None:
     along, up = np.array([1.0, 0.0]), np.array([0.0, 1.0])
     block = [0 * up, width * along, width * along + 0.2 * up, 0.2 * up]
     track = {"id": 0, "vertices": [[-0.5, -1], [4, -1], [4, 0], [-0.5, 0]], "fixed": True}
-    problem = structure_of(
-        {
-            "friction": mu,
-            "blocks": [track, {"id": 1, "vertices": [each.tolist() for each in block]}],
-        }
-    ).tilted(slope)
+    blocks = [track, {"id": 1, "vertices": [each.tolist() for each in block]}]
+    problem = structure_of({"friction": mu, "blocks": blocks}).tilted(slope)
     size, start = problem.assembly.size, problem.assembly.centres[0] / problem.assembly.size
     world = world_of(problem, 0.01)
     time, speeding = 0.0, math.sin(slope) - mu * math.cos(slope)
@@ -207,16 +190,12 @@ def test_a_force_at_a_point_goes_with_its_block() -> None:
 
 def test_what_falls_lands_on_the_supports_there_are() -> None:
     """Off a shelf onto a step, no pier and no floor of its own."""
-    problem = structure_of(
-        {
-            "friction": 0.3,
-            "blocks": [
-                {"id": "step", "vertices": [[-1, 0], [9, 0], [9, 1], [-1, 1]], "fixed": True},
-                {"id": "shelf", "vertices": [[0, 3], [2, 3], [2, 4], [0, 4]], "fixed": True},
-                {"id": 1, "vertices": [[1.2, 4], [3, 4], [3, 4.5], [1.2, 4.5]]},
-            ],
-        }
-    )
+    blocks = [
+        {"id": "step", "vertices": [[-1, 0], [9, 0], [9, 1], [-1, 1]], "fixed": True},
+        {"id": "shelf", "vertices": [[0, 3], [2, 3], [2, 4], [0, 4]], "fixed": True},
+        {"id": 1, "vertices": [[1.2, 4], [3, 4], [3, 4.5], [1.2, 4.5]]},
+    ]
+    problem = structure_of({"friction": 0.3, "blocks": blocks})
     assert ground_level(problem.assembly) == 0.0
     world = world_of(problem, 0.01)
     world.advance(1500)
@@ -228,21 +207,9 @@ def test_what_falls_lands_on_the_supports_there_are() -> None:
 def test_a_block_of_several_polygons_meets_others_by_each_of_them() -> None:
     """An arch over a post slides until its leg meets the post, not its hull."""
     arch = [[0, 0], [0.5, 0], [0.5, 1], [2, 1], [2, 0], [2.5, 0], [2.5, 1.5], [0, 1.5]]
-    problem = structure_of(
-        {
-            "friction": 0.2,
-            "blocks": [
-                FLOOR,
-                {
-                    "id": "post",
-                    "vertices": [[1, 0], [1.5, 0], [1.5, 0.8], [1, 0.8]],
-                    "fixed": True,
-                },
-                {"id": 1, "vertices": arch},
-            ],
-            "live": [{"body": [0.25, 0]}],
-        }
-    ).with_load(1.0)
+    post = {"id": "post", "vertices": [[1, 0], [1.5, 0], [1.5, 0.8], [1, 0.8]], "fixed": True}
+    table = {"friction": 0.2, "blocks": [FLOOR, post, {"id": 1, "vertices": arch}]}
+    problem = structure_of({**table, "live": [{"body": [0.25, 0]}]}).with_load(1.0)
     assert len(problem.assembly.blocks[0].parts) > 1
     world = world_of(problem, 0.01)
     world.hold(1)

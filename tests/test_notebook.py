@@ -27,6 +27,7 @@ with warnings.catch_warnings():
 
 ARCH = Arch(half_angle=math.radians(90), eta=0.12, voussoirs=27)
 THIN = replace(ARCH, eta=0.1)
+RING = CircularArch.of(ARCH, friction=0.7).but(eta=None)
 BRIDGE = CircularArch(
     span=8, rise=3, thickness=0.45, voussoirs=15, friction=0.6, density=22_000
 )
@@ -53,16 +54,7 @@ def shown() -> dict[str, Any]:
         ),
         "arch check": blocksim.check(CircularArch.of(THIN, friction=0.7)),
         "check": check(problem.with_load(0.45)),
-        "arch bracket": blocksim.bracket(
-            CircularArch(
-                half_angle=ARCH.half_angle,
-                friction=0.7,
-                voussoirs=27,
-                weight="centreline",
-                density=ARCH.specific_weight,
-            ),
-            method="limit",
-        ),
+        "arch bracket": bracket(RING, method="limit"),
         "bracket": bracket(problem, over="tilt"),
         "recording": blocksim.simulate(
             CircularArch.of(THIN, friction=0.7), method="direct", duration=0.5
@@ -154,19 +146,8 @@ def test_drawings_of_arches_tell_their_mode(formatted: Formatted) -> None:
     assert "collapses, mode rrr, by limit, geometrical factor of safety 0.93" in told
     assert "\N{GREEK SMALL LETTER ALPHA} = 90°, η = 0.1, 27 voussoirs, μ = 0.7 (34.99°)" in told
     assert "η = 0.1067" in formatted("arch bracket")["image/svg+xml"]
-    theory = blocksim.bracket(
-        CircularArch(
-            half_angle=ARCH.half_angle, friction=0.7, voussoirs=27, weight="centreline"
-        ),
-        method="theory",
-    )
-    assert "purely rotational [rrr]" in theory._repr_svg_()
-    none = blocksim.bracket(
-        CircularArch(
-            half_angle=ARCH.half_angle, friction=0.3, voussoirs=27, weight="centreline"
-        ),
-        method="limit",
-    )
+    assert "purely rotational [rrr]" in bracket(RING, method="theory")._repr_svg_()
+    none = bracket(RING.but(friction=0.3), method="limit")
     assert "η = 2" in none._repr_svg_()
     assert none.arch.eta_high is None
     engine = blocksim.check(CircularArch.of(ARCH, friction=0.7), method="direct")

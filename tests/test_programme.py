@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from arches import arch_at
+from drawn import box
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from structure_cases import case, names, of_each_kind, scenes
@@ -22,11 +23,6 @@ frictions = st.one_of(st.floats(0.05, 2.0), st.just(math.inf))
 lengths = st.floats(0.2, 5.0)
 FLOOR = {"id": "floor", "vertices": [[-99, -1], [99, -1], [99, 0], [-99, 0]], "fixed": True}
 SIDEWAYS = [{"body": [1, 0]}]
-
-
-def box(name: str, left: float, low: float, right: float, high: float) -> dict[str, Any]:
-    """A rectangular block of a structure file."""
-    return {"id": name, "vertices": [[left, low], [right, low], [right, high], [left, high]]}
 
 
 def friction(mu: float) -> float | str:

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn import box
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from running import PROGRAM, inside
@@ -38,10 +39,6 @@ from tests.random_problems import Case, drawn
 
 Table = dict[str, Any]
 BED = {"id": "bed", "fixed": True, "vertices": [[6, -1], [9, -1], [9, 0], [6, 0]]}
-
-
-def box(name: str, left: float, low: float, right: float, high: float) -> Table:
-    return {"id": name, "vertices": [[left, low], [right, low], [right, high], [left, high]]}
 
 
 def on_a_ramp(size: float, rise: float, friction: float, weight: float | None = None) -> Table:

@@ -4,15 +4,15 @@ import html
 import json
 import math
 import re
-from functools import cache
 from pathlib import Path
 
 import pytest
+from arches import ENGINEERS
 from arches import least as least_of
 from running import inside
 from windows import Windows
 
-from blocksim import Arch, CircularArch, check
+from blocksim import CircularArch, check
 
 ASKED = ("--span", "8", "--rise", "3", "--thickness", "0.45", "--voussoirs", "31")
 FRICTION = ("--friction-angle", "35")
@@ -30,18 +30,6 @@ PUSHED = {
     "live": [{"block": "top", "point": [0, 2.5], "force": [1000, 0]}],
 }
 INNER = (8**2 / 4 + 3**2) / 6
-
-
-@cache
-def engineers() -> Arch:
-    radius = INNER + 0.225
-    return Arch(
-        half_angle=math.asin(4 / INNER),
-        eta=0.45 / radius,
-        voussoirs=31,
-        weight="sector",
-        radius=radius,
-    )
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +67,7 @@ def value(text: str) -> float:
 
 def test_figures_of_an_arch_are_those_of_limit_analysis(pages: Path) -> None:
     said = rows_of(pages / "arch.html")
-    arch, mu = engineers(), math.tan(math.radians(35))
+    arch, mu = ENGINEERS, math.tan(math.radians(35))
     problem = CircularArch.of(arch, mu).problem()
     assert said["span"] == "8.000 m | intrados"
     assert said["rise"] == "3.000 m | intrados"
@@ -112,7 +100,7 @@ def test_every_joint_is_in_the_table(pages: Path) -> None:
     springing = said["support-1"].split(" | ")
     # Square to the springing: H sin alpha + V cos alpha by hand, of the safest state.
     left = [float(each) for each in said["left"].split(" | ")]
-    alpha = engineers().half_angle
+    alpha = ENGINEERS.half_angle
     normal = left[4] * math.cos(alpha) + left[5] * math.sin(alpha)
     assert float(springing[0]) == pytest.approx(normal, rel=5e-4)
     # Eccentricity in mm over half the thickness is the share of width.

@@ -11,6 +11,7 @@ from typing import Any
 import ezdxf
 import numpy as np
 import pytest
+from arches import ENGINEERS
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
@@ -32,24 +33,12 @@ def arch(count: int, degrees: float, eta: float, mu: float, radius: float = 1.0)
     return CircularArch.of(built, mu).problem()
 
 
-def engineers() -> Problem:
-    radius = INNER + THICK / 2
-    built = Arch(
-        half_angle=math.asin(SPAN / 2 / INNER),
-        eta=THICK / radius,
-        voussoirs=31,
-        weight="sector",
-        radius=radius,
-    )
-    return CircularArch.of(built, math.tan(math.radians(35))).problem()
-
-
 def kind(name: str, **more: Any) -> Problem:
     return structure_of({"kind": name, "friction": 0.6, **more})
 
 
 CASES = {
-    "engineer's": engineers,
+    "engineer's": lambda: CircularArch.of(ENGINEERS, math.tan(math.radians(35))).problem(),
     "five": lambda: arch(5, 90, 0.3, 0.7),
     "many": lambda: arch(101, 60, 0.1, 0.7, 4.2),
     "horseshoe": lambda: arch(27, 140, 0.9, 1.5),

@@ -16,7 +16,6 @@ from strangers import packed
 
 from blocksim import Arch, Block, CircularArch, InputError, Load, load_recording
 from blocksim.blocks.problem import Move
-from blocksim.common.checks import FACTOR, FRICTION, Range
 from blocksim.common.files import json_of, read_file, toml_of
 from blocksim.simulation import archive as recordings
 from blocksim.view import video
@@ -31,23 +30,6 @@ def one_line(done: subprocess.CompletedProcess[str], longest: int = 1000, code: 
     assert done.stderr[:-1].isprintable()
     assert len(done.stderr) <= longest + len("blocksim: \n")
     return done.stderr
-
-
-def test_a_range_says_what_else_it_has() -> None:
-    assert FRICTION.words == "1e-06 to 1e+06 (or inf)"
-    assert FRICTION.has(math.inf)
-    assert not FRICTION.has(0)
-    assert (FACTOR.words, FACTOR.has(-1e9), FACTOR.has(0), FACTOR.has(-2e9)) == (
-        "-1e+09 to 1e+09", True, True, False,
-    )  # fmt: skip
-    above = Range(low=0, high=math.nextafter(180, 0), unit="deg", above=True)
-    assert (above.words, above.has(0), above.has(180)) == (
-        "above 0 and below 180 deg", False, False,
-    )  # fmt: skip
-    whole = Range(low=1, high=3, whole=True)
-    assert [whole.has(each) for each in (1, 2.0, 2.5, 4, True, math.nan, "2")] == [
-        True, True, False, False, False, False, False,
-    ]  # fmt: skip
 
 
 # Sizes of real things.

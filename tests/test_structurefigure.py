@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn import square
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, PathPatch
@@ -33,11 +34,6 @@ from blocksim.view.sheet import answer_sheet, scale_for, sheet_of
 from blocksim.view.sheetfigure import SCREEN, sheet_figure
 from blocksim.view.structure import fill_outlines
 from blocksim.view.style import DEAD, LIVE, use_of
-
-
-def square(x: float, y: float, wide: float = 1.0, tall: float = 1.0) -> list[list[float]]:
-    return [[x, y], [x + wide, y], [x + wide, y + tall], [x, y + tall]]
-
 
 GROUND = {"id": "g", "vertices": square(-3, -1, 8, 1), "fixed": True}
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn import square
 from recorded import drawn_words, recorded
 from structure_cases import scenes
 
@@ -22,10 +23,6 @@ ARCH_SAYINGS = (
     "arch", "thickness", "extrados", "intrados", "voussoir", "r)", "η",
     "\N{GREEK SMALL LETTER ALPHA}",
 )  # fmt: skip
-
-
-def square(x: float, y: float, wide: float = 1.0, tall: float = 1.0) -> list[list[float]]:
-    return [[x, y], [x + wide, y], [x + wide, y + tall], [x, y + tall]]
 
 
 def yard(**more: Any) -> Problem:

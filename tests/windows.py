@@ -73,6 +73,7 @@ class Windows:
         page.set_viewport_size({"width": width, "height": height})
         page.emulate_media(media="screen", **looks)
         page.goto(address)
+        settle(page)
         return page
 
     def _new(self, options: Any) -> Any:

@@ -210,6 +210,7 @@ def test_a_wall_of_ones_own(page: Any) -> None:
     assert told(page).startswith("On the verge")
     page.click("#to-map")
     page.wait_for_selector("#map")
+    settle(page)
     assert page.inner_text("#verdict").startswith("On the verge")
 
 
@@ -237,4 +238,5 @@ def test_an_arch_from_three_voussoirs_to_the_continuous_one_and_with_a_load(page
     assert f"bears {100 * exact:.4g} %" in told(page)
     page.click("#to-map")
     page.wait_for_selector("#map")
+    settle(page)
     assert page.input_value("#voussoirs") == "11"
