@@ -186,3 +186,15 @@ def test_what_rigid_blocks_bear_at_any_load_crushes_under_twice_the_most() -> No
     for share, code in ((0.999, 0), (1.001, 1), (2, 1), (10, 1)):
         found = inside("check", *crushes, "--load", repr(share * most))
         assert found.returncode == code, (share, found.stdout, found.stderr)
+
+
+@pytest.mark.parametrize("mu", ["inf", "0.6"])
+def test_stone_that_is_strong_for_its_size_crushes_little(mu: str) -> None:
+    """A bench model of stone: its strength is 1e5 of what its joints bear."""
+    arch = ("--span", "0.12459", "--rise", "0.0484", "--voussoirs", "13", "--mu", mu)
+    heavy = ("--thickness", "0.028598", "--unit-weight", "16.231")
+    rigid, strong = (
+        answered("bracket", *arch, *heavy, *more, "--over", "thickness")["limit"]
+        for more in ((), ("--strength", "24.727"))
+    )
+    assert rigid < strong < 1.01 * rigid

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, cast
@@ -11,6 +12,7 @@ from blocksim.ask.statics import unit
 from blocksim.blocks.assembly import Array, Blocks
 from blocksim.blocks.joints import ObservedJoint
 from blocksim.blocks.problem import Problem
+from blocksim.common.errors import Unsolved
 from blocksim.common.shown import Shown
 from blocksim.kinds.offers import Offers, carried_of, offers_of
 from blocksim.limit import Equilibrium, Resultants, equilibrium
@@ -194,14 +196,17 @@ class Check(Shown, Generic[Blocks]):
     def carried(self) -> Carried | None:
         """What it carries; None in space, where the ground shakes, or it is too large.
 
-        `blocksim.kinds.offers.carried_of` has no such bound.
+        `blocksim.kinds.offers.carried_of` has no such bound. Where the solver gives up it is
+        None, too: that takes nothing from the verdict.
         """
         return self.carried_at(None)
 
     def carried_at(self, joint: int | None) -> Carried | None:
         """Return the same as `carried`, with the thrust at a joint; None is the crown."""
         small = self.offers or len(self.problem.assembly.joints) <= SOUGHT
-        return carried_of(self.problem, joint, self.needed) if small else None
+        with suppress(Unsolved):
+            return carried_of(self.problem, joint, self.needed) if small else None
+        return None
 
     def __repr__(self) -> str:
         return f"Check({self.verdict}, by {self.method}, of {self.problem!r})"

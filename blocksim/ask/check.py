@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple, Unpack, cast
 
@@ -22,6 +23,7 @@ from blocksim.blocks.assembly import Blocks
 from blocksim.blocks.joints import closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import bears_road
+from blocksim.common.errors import Unsolved
 from blocksim.common.progress import Progress
 from blocksim.engines import get_engine
 from blocksim.kinds.offers import Offers, offers_of
@@ -163,7 +165,9 @@ def _general(problem: Problem[Any], chosen: Method, given: Taken) -> _Found:
     exists = None if static is None else static.exists
     if static is not None and chosen.is_static:
         if exists and not problem.in_space and problem.strength is not None:
-            needed = strength_needed(problem)
+            needed = None
+            with suppress(Unsolved):
+                needed = strength_needed(problem)
             verdict, evidence = crushing_evidence(problem, needed)
             exists = verdict is Verdict.STANDS
             rates = None if exists or needed is None else needed.mechanism

@@ -46,8 +46,8 @@ SPARED = (0.9, 0.5, 0.2, 0.05)
 class Needed:
     """The least compressive strength at which forces of equilibrium exist.
 
-    `low`, `high`: Between which it is [Pa]: no forces need less, and those that were found need
-        the most.
+    `low`, `high`: Between which it is [Pa], as far as the solver's gap and what its forces lack
+        tell.
     `forces`, (joints, 2, 2): Those that were found, as of `Equilibrium`: they press least on
         the joint that is pressed most.
     `mechanism`, (blocks, 3): Rates x, y and rotation with which blocks of less strength begin
@@ -144,7 +144,7 @@ class Crushing:
         self, cost: Array, column: Any, right: Array, soil: Any, *, sought: bool = False
     ) -> tuple[Optimum, Array]:
         """Find the least cost of parts, a factor on a column, and a share that is sought."""
-        cones, count, loads = self._cones, cost.size, int(soil.shape[1])
+        cones, count, loads, rows = self._cones, cost.size, int(soil.shape[1]), right.size
         beside = [] if column is None else [column]
         beside += [sparse.csc_array((right.size, 1))] if sought else []
         balance: Any = sparse.hstack([cones.balance, *beside, soil], format="csc")
@@ -158,14 +158,15 @@ class Crushing:
         )
         ends: list[Cone] = [("second-order", 3)] * self._full.size
         cost = np.append(cost, np.zeros(loads))
+        right = np.concatenate([right, np.zeros(above.size), np.ones(loads), bound])
         # What defeats the solver in one scale it solves in the other.
         for scaled_first in (True, False):
             found = solved_cones(
                 sparse.csc_matrix((cost.size, cost.size)),
                 cost,
                 matrix,
-                np.concatenate([right, np.zeros(above.size), np.ones(loads), bound]),
-                [("zero", right.size), ("nonnegative", above.size + loads), *ends],
+                right,
+                [("zero", rows), ("nonnegative", above.size + loads), *ends],
                 finest=FINEST,
                 scaled=scaled_first,
             )
@@ -173,13 +174,16 @@ class Crushing:
             # Of a strength that is sought it is wrong: that is 0 at least, and has no bound.
             if "Infeasible" in said and not sought:
                 return UNBOUNDED if "Dual" in said else NONE, np.zeros(loads)
-            if _is_faithful(found, balance, right, ROUGH if sought else FAITHFUL):
-                values, prices = np.array(found.x), -np.array(found.z)
-                optimum = replace(
-                    NONE, values=values[:count], prices=prices, least=float(found.obj_val_dual)
-                )
+            values, prices = np.array(found.x), -np.array(found.z)
+            lack = np.abs(matrix @ values + np.array(found.s) - right)
+            # What is lacking may lower the cost by its price; of a strength that is told.
+            least = float(found.obj_val_dual) - float(np.abs(prices) @ lack)
+            sure = float(found.obj_val_dual) if sought else least
+            gap = (ROUGH if sought else FAITHFUL) * max(1.0, abs(float(found.obj_val)))
+            if lack[:rows].max() < FAITHFUL and float(found.obj_val) - sure <= gap:
+                optimum = replace(NONE, values=values[:count], prices=prices, least=least)
                 return optimum, np.clip(values[count:], 0.0, 1.0)
-        if self._is_hopeless(column, right, sought=sought):
+        if self._is_hopeless(column, right[:rows], sought=sought):
             return NONE, np.zeros(loads)
         raise Unsolved
 
@@ -203,14 +207,14 @@ class Crushing:
         """Return rows and right sides of n^2 <= 2 P m, three of each end.
 
         Of two numbers u and v and a third w it is w^2 <= u v: (u + v, u - v, 2 w) lies in a
-        cone of the second order.
+        cone of the second order. With u and v of one size the solver tells how far within.
         """
-        ease = sparse.diags_array(1 / self._unit)
-        u: Any = sparse.diags_array(2 * self._full / self._unit**2) @ self._ends
-        w: Any = 2 * ease @ self._both
+        even = np.sqrt(2 * self._full / self._unit)
+        u: Any = sparse.diags_array(even / self._unit) @ self._ends
+        w: Any = sparse.diags_array(2 / self._unit) @ self._both
         size = self._full.size
         rows = sparse.vstack([u, u, w], format="csr")
-        v = np.concatenate([np.ones(size), -np.ones(size), np.zeros(size)])
+        v = np.concatenate([even, -even, np.zeros(size)])
         order = np.arange(3 * size).reshape(3, size).T.ravel()
         more = np.zeros((3 * size, count - self._cones.count))
         more[:, -1:] += v[:, None] * sought
@@ -230,7 +234,7 @@ def strength_needed(problem: Problem) -> Needed | None:
     problem = mobilised(problem)
     bearing = Bearing(problem)
     found = _least(problem, bearing)
-    return None if found is None else _needed(bearing.cones, *found[:3])
+    return None if found is None else _needed(bearing.cones, *found[:2])
 
 
 def mobilised(problem: Problem, live: Array | None = None) -> Problem:
@@ -243,7 +247,7 @@ def mobilised(problem: Problem, live: Array | None = None) -> Problem:
     bearing, shares = Bearing(problem), np.zeros(0)
     if live is None:
         found = _least(problem, bearing)
-        shares = shares if found is None else found[3]
+        shares = shares if found is None else found[2]
     else:
         cones, crushing = bearing.cones, Crushing(problem, bearing, problem.strength)
         dead = cones.loads(problem.with_load(0.0).applied_forces())
@@ -252,8 +256,8 @@ def mobilised(problem: Problem, live: Array | None = None) -> Problem:
     return bearing.added(problem, shares)
 
 
-def _least(problem: Problem, bearing: Bearing) -> tuple[Crushing, Optimum, float, Array] | None:
-    """Find the programme, its optimum and strength, and the shares of soil that need least."""
+def _least(problem: Problem, bearing: Bearing) -> tuple[Optimum, float, Array] | None:
+    """Find the share that is needed, of which strength, and the shares of soil with it."""
     require_sizes(problem)
     cones, pull = bearing.cones, problem.applied_forces()
     # Of which joints bear about what blocks weigh, so that its multiples are numbers near 1.
@@ -270,19 +274,20 @@ def _least(problem: Problem, bearing: Bearing) -> tuple[Crushing, Optimum, float
             continue
         if not found.exists:
             return None
-        share, last = float(found.values[-1]), (crushing, found, unit, shares)
+        share, last = float(found.values[-1]), (found, unit, shares)
         if 1 / ALIKE < share < ALIKE:
             return last
         unit *= share
     raise Unsolved
 
 
-def _needed(cones: Cones, crushing: Crushing, found: Optimum, unit: float) -> Needed:
-    parts, low = found.values[:-1], min(found.least, float(found.values[-1]))
+def _needed(cones: Cones, found: Optimum, unit: float) -> Needed:
+    share = float(found.values[-1])
+    error = max(share - found.least, FAITHFUL * share)
     return Needed(
-        low=unit * low * (1 - FAITHFUL),
-        high=unit * max(low, crushing.needed(parts)),
-        forces=cones.forces(parts),
+        low=unit * max(share - error, 0.0),
+        high=unit * (share + error),
+        forces=cones.forces(found.values[:-1]),
         mechanism=scaled(cones.rates(found.prices[: cones.balance.shape[0]])),
     )
 
@@ -294,14 +299,6 @@ def require_sizes(problem: Problem) -> None:
     require(known, "strength", value, "left out, or sizes and unit weights in m and kN/m3")
     corners = bool(problem.assembly.joint_arrays.is_corner.any())
     require(not corners, "strength", value, "left out: a corner bears a block without a width")
-
-
-def _is_faithful(found: Any, balance: Any, right: Array, gap: float) -> bool:
-    """Tell whether forces balance, and no cost is lower by more than a gap."""
-    values, cost = np.array(found.x), float(found.obj_val)
-    if not np.isfinite(values).all() or np.abs(balance @ values - right).max() >= FAITHFUL:
-        return False
-    return abs(cost - float(found.obj_val_dual)) <= gap * max(1.0, abs(cost))
 
 
 def _bounds(at: NDArray[np.intp], sign: float, count: int) -> Any:
