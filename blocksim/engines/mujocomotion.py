@@ -71,6 +71,8 @@ LOOSE = 10.0
 """Time constant of friction held from rest."""
 HELD_RATIO, RATIO = 1e6, 1e4
 """How much harder friction is than pressure, in the onset test and in motion."""
+IMPACT = 10.0
+"""Acceleration from which a block has met something [g]."""
 GENTLE, FIRMER = 20.0, 0.8
 """That period at first, which lets joints that have sunk into each other rise without a push,
 and by how much it shrinks in each step."""
@@ -183,6 +185,7 @@ class Moving:
             self._press(HOLD_STEP)
         early = self._round(max(sweeps, LEAST_SWEEPS) // 2)
         late = self._round(max(sweeps, LEAST_SWEEPS) // 2)
+        self._zero = self._state.qpos.copy()
         # What still changes is the contacts' doing, not the arch's.
         self._steady = np.abs(late - early).max() < STEADY * np.abs(late).max() + STILL
         return self._rates(late)
@@ -218,6 +221,8 @@ class Moving:
             self._zero = self._state.qpos.copy()
             self._model.opt.tolerance = TOLERANCE
             self._choose(self._part, 0.0)
+            library.mj_forward(self._model, self._state)
+            self._stagger(self._state.qacc, -self._part)
         for left in range(steps, 0, -1):
             if self._is_rubble:
                 self._tumble()
@@ -234,13 +239,23 @@ class Moving:
     def _make_solid(self) -> None:
         """Make blocks the bodies they are, with what they stand on and the floor."""
         self._is_rubble = True
-        placed, velocities = self._blocks.placed(self.poses()), self._state.qvel.copy()
+        placed, last = self._blocks.placed(self.poses()), self._state
         self._model = self._blocks.rubble()
         # A finer step is finer in its parts, too.
         self._model.opt.timestep *= self._step / STEP
         self._state = library.MjData(self._model)
-        self._state.qpos[:], self._state.qvel[:] = placed, velocities
+        self._state.qpos[:], self._state.qvel[:] = placed, last.qvel
         self._zero = self._model.qpos0.copy()
+        self._stagger(last.qacc, self._part - self._model.opt.timestep)
+
+    def _stagger(self, rates: Array, longer: float) -> None:
+        """Set velocities, those halfway through a step, for a step of another length.
+
+        `rates`: Accelerations.
+        `longer`: By how much the step before was longer: it had none before the first.
+        """
+        if np.abs(rates).max(initial=0.0) < IMPACT:
+            self._state.qvel[:] += rates * longer / 2
 
     def _tumble(self) -> None:
         """Take a step of blocks that meet."""

@@ -39,5 +39,7 @@ def coulomb_step(model: Any, state: Any) -> None:
                 break
             opening = found
             state.efc_aref[rows] = wanted - opening
+            # Forces of the round before are nearer than those of the step before.
+            state.qacc_warmstart[:] = state.qacc
             library.mj_fwdConstraint(model, state)
     library.mj_Euler(model, state)
