@@ -52,6 +52,7 @@ from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.outlines import width
 from blocksim.engines.energy import energy
 from blocksim.engines.solids import Solids
+from blocksim.simulation.motion import lie_still
 
 SEED = 16
 COUNT = 20
@@ -147,7 +148,7 @@ def ask(case: Case, engine: str) -> Row:
     return {
         **asked,
         "ended": float(recording.times[-1]),
-        "rested": bool(recording.times[-1] < LONGEST - 0.1),
+        "rested": lie_still(problem.assembly, list(recording.poses)),
         **measured(recording),
         "own_overlap": recording.quality.penetration,
         "own_overlap_of_smallest": recording.overlap_share,

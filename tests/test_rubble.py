@@ -65,6 +65,19 @@ def test_every_heap_begins_to_fall() -> None:
         assert world.quality().residual < 1e-9, case
 
 
+@pytest.mark.parametrize(
+    ("engine", "number"),
+    [("direct", 10), *(pytest.param("pymunk", at, marks=LONG) for at in (0, 5))],
+)
+def test_a_heap_is_followed_to_its_end(engine: str, number: int) -> None:
+    """Stones stay solid, and gain no energy, though joints are as short as 2e-4."""
+    row = rubble.ask(rubble.Case(number, "heap"), engine)
+    assert row["rested"] or row["ended"] >= rubble.LONGEST
+    assert max(row["overlap"], row["own_overlap_of_smallest"]) < rubble.ALLOWED
+    assert max(row["gain"], row["own_gain"]) < rubble.GAIN
+    assert row["thrown"] == 0.0
+
+
 def test_what_leaves_the_plane_falls_onto_the_ground() -> None:
     """An arch in gravity that leans out of its plane overturns, and lies on its side."""
     arch = Arch(half_angle=math.pi / 2, eta=0.3, voussoirs=5, depth=0.3)

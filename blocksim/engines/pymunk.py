@@ -33,6 +33,8 @@ SHAKEN_PARTS, MOVES = 8, 1e-4
 divided [sqrt(size g)]."""
 FAST, FEWER = 1e-2, 50
 """Velocity from which on so many times fewer will do [sqrt(size g)]."""
+FALLEN = 2e-3
+"""Way of a corner from which on blocks fall, and steps need not be those of joints [size]."""
 IMPACT = 10.0
 """Acceleration from which a block has met something [g]."""
 MOST_UNSEEN, LEAST_WAY = 16, 1e-12
@@ -81,7 +83,8 @@ class _World:
         self._problem, self._assembly, self._settings = problem, problem.assembly, settings
         self._shaken = problem.is_moving
         self._space = Space(problem)
-        self._balance = Balance.of(problem, self.poses())
+        self._built = self.poses()
+        self._balance = Balance.of(problem, self._built)
         self._penetration = self._time = 0.0
         self._last = settings.step
         # A finer step is finer in its parts, too.
@@ -117,15 +120,19 @@ class _World:
             ahead = self._starts * self._settings.step / 2
             self._space.set_velocities(self._space.velocities() + ahead)
             self._starts = np.zeros_like(self._starts)
-        for left in range(steps, 0, -1):
-            if self._space.is_solid:
-                self._space.part()
-                self._tumble()
-                continue
-            before = self._space.velocities() if left == 1 else None
+        left = steps
+        while left and not self._space.is_solid:
+            before, left = self._space.velocities() if left == 1 else None, left - 1
             self._turn()
             if before is not None:
                 self._balance.look(self.poses(), before, self._space.velocities())
+        # For short joints steps are short, which blocks that fall do not ask for.
+        fallen = self._assembly.displacement(self.poses() - self._built) > FALLEN
+        most = max(1, int(LONGEST_STEP / rule(self._assembly).step)) if fallen else 1
+        while left:
+            self._space.part()
+            self._tumble(min(left, most))
+            left -= min(left, most)
 
     def _turn(self) -> None:
         """Take a step of blocks that touch at joints only."""
@@ -154,18 +161,18 @@ class _World:
         self._unseen = min(max(1, int(solids.left / (2 * fast))), MOST_UNSEEN)
         self._ahead = self._unseen
 
-    def _tumble(self) -> None:
-        """Take a step of blocks that may meet, in parts."""
-        space, step = self._space, self._settings.step
+    def _tumble(self, steps: int) -> None:
+        """Take steps of blocks that may meet as one, in parts."""
+        space, step = self._space, steps * self._settings.step
         way = (self._speed() + step) * step * self._finer
         parts = min(math.ceil(way / space.solids.largest), MOST_PARTS)
-        parts = max(parts, SHAKEN_PARTS) if self._shaken else parts
+        parts = max(parts, steps * SHAKEN_PARTS) if self._shaken else parts
         part = step / parts
         # Velocities are those half a step ahead: what has been gained by then is less now.
         sudden = np.abs(self._rate).max(axis=1, keepdims=True) > IMPACT
         gained = np.where(sudden, 0.0, self._rate) * (part - self._last) / 2
         space.set_velocities(space.velocities() + gained)
-        sweeps = max(RUBBLE_SWEEPS, self._settings.sweeps // parts)
+        sweeps = max(RUBBLE_SWEEPS, steps * self._settings.sweeps // parts)
         for _ in range(parts - 1):
             self._go(part, sweeps, afresh=True)
         before = space.velocities()
