@@ -1,8 +1,9 @@
 """Blocks that begin in motion, bounce, and fall otherwise than on Earth, and ground that also
 goes up and down, held against closed forms.
 
-Ballistics; heights after impacts with restitution (e^2 each); Coulomb's law for what slides;
-periods that go with 1/sqrt(g); and the least friction of a block on ground that falls away.
+Ballistics; heights after impacts with restitution (e^2 each), and the one impulse of a corner
+that hits; Coulomb's law for what slides; periods that go with 1/sqrt(g); and the least friction
+of a block on ground that falls away.
 """
 
 import json
@@ -12,10 +13,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from rocking import on_shaking_ground
 from running import answered, inside
+from scipy.optimize import brentq
 
 from blocksim import Problem, Recording, Verdict, check, load_recording, simulate, structure_of
 
@@ -24,13 +26,22 @@ BOTH = pytest.mark.parametrize("method", ["direct", "pymunk"])
 
 
 def block(
-    low: float = 0.0, wide: float = 1.0, tall: float = 1.0, mu: float = 0.5, **given: Any
+    low: float = 0.0,
+    wide: float = 1.0,
+    tall: float = 1.0,
+    mu: float = 0.5,
+    count: int = 1,
+    **given: Any,
 ) -> Problem:
-    """A block above a floor, 1 m the unit of length."""
-    corners = [[0, low], [wide, low], [wide, low + tall], [0, low + tall]]
+    """A block above a floor, 1 m the unit of length, or a stack of such blocks."""
     floor = {"id": 0, "vertices": [[-99, -1], [99, -1], [99, 0], [-99, 0]], "fixed": True}
-    own = {"id": 1, "vertices": corners, "free": low > 0, **given}
-    return structure_of({"friction": mu, "size": 1, "blocks": [floor, own]})
+    blocks = [floor]
+    for row in range(count):
+        foot, top = low + row * tall, low + (row + 1) * tall
+        corners = [[0, foot], [wide, foot], [wide, top], [0, top]]
+        free = low > 0 and row == 0
+        blocks.append({"id": 1 + row, "vertices": corners, "free": free, **given})
+    return structure_of({"friction": mu, "size": 1, "blocks": blocks})
 
 
 def way(recording: Recording) -> np.ndarray:
@@ -58,28 +69,107 @@ def test_what_is_thrown_goes_along_a_parabola(
     assert np.allclose(way(recording), np.transpose(wanted), atol=1e-8)
 
 
-@pytest.mark.parametrize(("share", "gravity"), [(0.0, 9.81), (0.8, 1.62), (1.0, 9.81)])
+@settings(max_examples=4)
+@example(share=0.0, gravity=9.81, wide=1.0, tall=1.0, low=1.0, count=1)
+@example(share=0.8, gravity=1.62, wide=1.0, tall=1.0, low=1.0, count=1)
+@example(share=1.0, gravity=9.81, wide=1.0, tall=1.0, low=1.0, count=1)
+@given(
+    share=st.floats(0, 1),
+    gravity=st.sampled_from([1.62, 9.81, 25.0]),
+    wide=st.floats(0.3, 2),
+    tall=st.floats(0.2, 1),
+    low=st.floats(0.2, 2),
+    count=st.integers(1, 3),
+)
 def test_what_bounces_comes_back_to_the_square_of_the_restitution(
-    share: float, gravity: float
+    share: float, gravity: float, wide: float, tall: float, low: float, count: int
 ) -> None:
-    problem = block(1.0, velocity=(0, 1e-9)).under(gravity)
-    fall = math.sqrt(2 / gravity)
+    """A stack that falls as one bounces as one: with it each block keeps its share."""
+    problem = block(low, wide, tall, count=count, velocity=(0, 1e-9)).under(gravity)
+    fall = math.sqrt(2 * low / gravity)
+    until = fall * (1 + 2 * share + 1.8 * share**2)
     recording = simulate(
-        problem, method="direct", duration=5.5 * fall / problem.seconds,
+        problem, method="direct", duration=until / problem.seconds,
         settings={"restitution": share},
     )  # fmt: skip
-    time, height = recording.times * problem.seconds, 1 + way(recording)[:, 1]
-    assert height.min() > -1e-5
-    tops = [
-        (fall * (1 + 2 * sum(share**k for k in range(1, n)) + share**n), share ** (2 * n))
-        for n in (1, 2)
+    time, poses = recording.times * problem.seconds, recording.poses
+    wanted, since, rises = low - gravity * time**2 / 2, fall, gravity * fall
+    for _ in range(2):
+        rises *= share
+        later = time - since
+        wanted = np.where(later > 0, rises * later - gravity * later**2 / 2, wanted)
+        since += 2 * rises / gravity
+    near = wanted > 0
+    for heights in (poses[:, :, 1] - poses[0, :, 1] + low).T:
+        assert np.allclose(heights[near], wanted[near], atol=2e-4)
+        assert heights.min() > -1e-5
+    assert np.abs(poses[:, :, 2]).max() < 1e-9
+
+
+@settings(max_examples=8)
+@given(
+    share=st.floats(0, 1),
+    mu=st.sampled_from([0.0, 0.1, 0.5, 2.0]),
+    wide=st.floats(0.5, 2),
+    tall=st.floats(0.5, 2),
+    across=st.floats(-2, 2),
+    spin=st.floats(-90, 90),
+)
+def test_a_corner_that_hits_parts_with_its_share_of_the_velocity(
+    share: float, mu: float, wide: float, tall: float, across: float, spin: float
+) -> None:
+    """Newton's restitution and Coulomb's friction of one impulse, in closed form."""
+    rate, low = math.radians(spin), 1.0
+    half = np.array([[-wide, -tall], [wide, -tall]]) / 2 @ [1, 1j]
+
+    def lowest(turn: float) -> complex:
+        turned = np.concatenate([half, -half]) * np.exp(1j * turn)
+        return complex(turned[turned.imag.argmin()])
+
+    height = low + tall / 2
+    hit = brentq(
+        lambda now: height - G * now**2 / 2 + lowest(rate * now).imag,
+        1e-3,
+        math.sqrt(2 * height / G),
+    )
+    arm = lowest(rate * hit)
+    lever, inertia = np.array([-arm.imag, arm.real]), (wide**2 + tall**2) / 12
+    before = np.array([across, -G * hit]) + rate * lever
+    gives, away = np.eye(2) + np.outer(lever, lever) / inertia, -share * before[1]
+    sticks = np.linalg.solve(gives, [-before[0], away - before[1]])
+    impulses = [sticks] if abs(sticks[0]) <= mu * sticks[1] else []
+    for sense in (1.0, -1.0):
+        along = np.array([-sense * mu, 1.0])
+        slides = (away - before[1]) / (gives @ along)[1] * along
+        if slides[1] > 0 and sense * (before + gives @ slides)[0] > 0:
+            impulses.append(slides)
+    spun = rate + np.array([lever @ each for each in impulses]) / inertia
+    (shift, up), after = impulses[0] + [across, -G * hit], spun[0]
+    # Until another corner hits.
+    later = np.linspace(1e-3, 1.0, 1000)
+    clear = [
+        -arm.imag + up * each - G * each**2 / 2 + lowest(rate * hit + after * each).imag > 0
+        for each in later.tolist()
     ]
-    for when, high in tops:
-        # Beside the top the height is that of the parabola.
-        wanted = high - gravity * (time - when) ** 2 / 2
-        near = wanted > high / 2
-        assert share == 0 or near.any()
-        assert np.allclose(height[near], wanted[near], atol=2e-4)
+    assume(len(impulses) == 1 and clear[20])
+    until = hit + 0.9 * later[clear.index(False) if False in clear else -1]
+    problem = block(low, wide, tall, mu, velocity=(across, 0), spin_deg_s=spin).under(G)
+    assume(problem.is_moving)
+    recording = simulate(
+        problem, method="direct", duration=until / problem.seconds,
+        settings={"restitution": share},
+    )  # fmt: skip
+    time = recording.times * problem.seconds
+    early, late = np.minimum(time, hit), np.maximum(time - hit, 0.0)
+    wanted = [
+        across * early + shift * late,
+        -G * early**2 / 2 + up * late - G * late**2 / 2,
+        rate * early + after * late,
+    ]
+    assert (late > 0).any()
+    assert np.allclose(
+        way(recording)[time < until], np.transpose(wanted)[time < until], atol=2e-4
+    )
 
 
 @BOTH
