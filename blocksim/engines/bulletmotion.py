@@ -21,6 +21,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.engines.base import Quality, Settings
 from blocksim.engines.boxes import unwound
 from blocksim.engines.bulletspace import SLOP, Space
+from blocksim.engines.energy import later
 
 if TYPE_CHECKING:
     from blocksim.engines.bulletblocks import Planar
@@ -48,8 +49,6 @@ FINEST = 20
 LONGEST_TUMBLE, MOST_PARTS = 0.005, 400
 """Longest part of a step, and most of them, once blocks may meet."""
 TUMBLE_SWEEPS = 100
-IMPACT = 10.0
-"""Acceleration from which a block has met something [g]."""
 
 
 class Moving:
@@ -183,8 +182,7 @@ class Moving:
         """
         velocities = self._velocities()
         if step != self._last:
-            sudden = np.abs(self._rate).max(axis=1, keepdims=True) > IMPACT
-            velocities += np.where(sudden, 0.0, self._rate) * (self._last - step) / 2
+            velocities = later(velocities, self._rate, (self._last - step) / 2)
             for body, velocity in zip(self._bodies, velocities, strict=True):
                 self._space.hasten(body, velocity)
         self._last = step

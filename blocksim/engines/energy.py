@@ -1,4 +1,7 @@
-"""Energy of blocks in motion, and how far it rises above that at the release."""
+"""Energy of blocks in motion, and how far it rises above that at the release.
+
+Engines of impulses move blocks by velocities that are those halfway between two places.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,17 @@ Where = TypeVar("Where")
 """Where blocks are: poses, or `solid.bodies.Place`."""
 FELL = 1e-9
 """What counts as fallen [mean weights times the size]; the rest is round-off."""
+IMPACT = 10.0
+"""Acceleration from which a block has met something [g]."""
+
+
+def later(velocities: Array, rates: Array, time: float) -> Array:
+    """Return velocities a part of a step later, or earlier, where nothing was met meanwhile.
+
+    `velocities`, `rates`, (blocks, 3 or 6): These, and accelerations.
+    """
+    sudden = np.abs(rates).max(axis=1, keepdims=True) > IMPACT
+    return velocities + np.where(sudden, 0.0, rates) * time
 
 
 def energy(problem: Problem, poses: Array, velocities: Array) -> float:
@@ -70,7 +84,6 @@ class Balance(Generic[Where]):
     def look(self, poses: Where, before: Array, after: Array) -> None:
         """Take note of blocks at a place, with their velocities on the way to it and from it.
 
-        Engines of impulses move by velocities that are those halfway between two places.
         At a place it is their mean, with which a block that falls keeps its energy.
         """
         still = self._potential(poses)

@@ -38,6 +38,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.base import Quality, Settings
+from blocksim.engines.energy import later
 from blocksim.engines.mujocoblocks import RUBBLE_PERIOD, TOLERANCE, library
 from blocksim.engines.mujocostep import coulomb_step
 
@@ -71,8 +72,6 @@ LOOSE = 10.0
 """Time constant of friction held from rest."""
 HELD_RATIO, RATIO = 1e6, 1e4
 """How much harder friction is than pressure, in the onset test and in motion."""
-IMPACT = 10.0
-"""Acceleration from which a block has met something [g]."""
 GENTLE, FIRMER = 20.0, 0.8
 """That period at first, which lets joints that have sunk into each other rise without a push,
 and by how much it shrinks in each step."""
@@ -254,8 +253,9 @@ class Moving:
         `rates`: Accelerations.
         `longer`: By how much the step before was longer: it had none before the first.
         """
-        if np.abs(rates).max(initial=0.0) < IMPACT:
-            self._state.qvel[:] += rates * longer / 2
+        own = len(self._blocks.assembly.blocks), -1
+        velocities = self._state.qvel.reshape(own)
+        self._state.qvel[:] = later(velocities, rates.reshape(own), longer / 2).ravel()
 
     def _tumble(self) -> None:
         """Take a step of blocks that meet."""

@@ -14,7 +14,7 @@ from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine, Quality, Settings
 from blocksim.engines.chipmunk import Space
-from blocksim.engines.energy import Balance
+from blocksim.engines.energy import Balance, later
 
 LONGEST_STEP = 1 / 100
 THICK = 0.8
@@ -35,8 +35,6 @@ FAST, FEWER = 1e-2, 50
 """Velocity from which on so many times fewer will do [sqrt(size g)]."""
 FALLEN = 2e-3
 """Way of a corner from which on blocks fall, and steps need not be those of joints [size]."""
-IMPACT = 10.0
-"""Acceleration from which a block has met something [g]."""
 MOST_UNSEEN, LEAST_WAY = 16, 1e-12
 """Most steps between two looks where blocks are, and the least way in one [size]."""
 HOLD_SWEEPS, LEAST_HOLD = 4000, 50_000
@@ -117,8 +115,8 @@ class _World:
         """Let the blocks move, in parts of a step once they may meet."""
         if self._starts.any():
             # Its velocities are those half a step ahead.
-            ahead = self._starts * self._settings.step / 2
-            self._space.set_velocities(self._space.velocities() + ahead)
+            ahead = later(self._space.velocities(), self._starts, self._settings.step / 2)
+            self._space.set_velocities(ahead)
             self._starts = np.zeros_like(self._starts)
         left = steps
         while left and not self._space.is_solid:
@@ -169,9 +167,7 @@ class _World:
         parts = max(parts, steps * SHAKEN_PARTS) if self._shaken else parts
         part = step / parts
         # Velocities are those half a step ahead: what has been gained by then is less now.
-        sudden = np.abs(self._rate).max(axis=1, keepdims=True) > IMPACT
-        gained = np.where(sudden, 0.0, self._rate) * (part - self._last) / 2
-        space.set_velocities(space.velocities() + gained)
+        space.set_velocities(later(space.velocities(), self._rate, (part - self._last) / 2))
         sweeps = max(RUBBLE_SWEEPS, steps * self._settings.sweeps // parts)
         for _ in range(parts - 1):
             self._go(part, sweeps, afresh=True)
@@ -226,9 +222,8 @@ class _World:
         self._go(part, self._settings.sweeps)
         gained = space.velocities() - velocities
         space.put(poses)
-        sudden = np.abs(gained).max(axis=1, keepdims=True) > IMPACT * part
         # Its velocities are those half a step ahead.
-        space.set_velocities(velocities + np.where(sudden, 0.0, gained) / 2)
+        space.set_velocities(later(velocities, gained / part, part / 2))
         self._starts, self._time = np.zeros_like(velocities), 0.0
 
     def poses(self) -> Array:
