@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
-from blocksim.common.series import gauss
 
 TURN = math.radians(5)
 """By which a curve turns from chord to chord, at most."""
@@ -74,36 +73,23 @@ def arc(start: complex, end: complex, bulge: float) -> Chords:
 
 def bezier(points: list[complex]) -> Chords:
     """Return a cubic of four points as chords."""
-    start, first, second, end = points
+    start, end = points[0], points[-1]
     if not _near(*points):
         return TOO_FAR
-    size = max(abs(each - start) for each in points[1:])
-    chord = end - start
-    if not chord or max(
-        abs(((each - start) * chord.conjugate()).imag) for each in (first, second)
-    ) <= STRAIGHT * size * abs(chord):
+    one, two, chord = (each - start for each in points[1:])
+    off = max(abs((each * chord.conjugate()).imag) for each in (one, two))
+    if not chord or off <= STRAIGHT * max(map(abs, (one, two, chord))) * abs(chord):
         return LINE
 
     def at(shares: Array) -> Points:
         back = 1 - shares
-        return (
-            back**3 * start
-            + 3 * back**2 * shares * first
-            + 3 * back * shares**2 * second
-            + shares**3 * end
-        )
+        return start + shares * (3 * back * (back * one + shares * two) + shares**2 * chord)
 
-    def speed(shares: Array) -> Points:
-        back = 1 - shares
-        ways = first - start, second - first, end - second
-        return 3 * (back**2 * ways[0] + 2 * back * shares * ways[1] + shares**2 * ways[2])
-
-    # Of degree five: four nodes are exact.
-    shares, weights = gauss(4)
-    swept = ((at(shares) - start).conj() * speed(shares)).imag
-    ways = [each for each in (first - start, second - first, end - second) if each]
+    # Half of the integral of the curve, seen from its start, across its speed.
+    swept = one.conjugate() * (two + chord) + 2 * two.conjugate() * chord
+    ways = [each for each in (one, two - one, chord - two) if each]
     turn = sum(abs(cmath.phase(b / a)) for a, b in pairwise(ways))
-    return _chords(start, end, at, float(weights @ swept) / 2, turn)
+    return _chords(start, end, at, 0.15 * swept.imag, turn)
 
 
 def ellipse(
