@@ -7,7 +7,6 @@ quadrature by Gauss is exact to round-off.
 
 from __future__ import annotations
 
-from bisect import bisect
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -67,8 +66,7 @@ class Curve:
 
         total = np.concatenate([[0.0], np.cumsum(lengths(low, wide))])
         wanted = total[-1] * np.arange(1, count) / count
-        marks = total[1:-1].tolist()
-        panel = np.array([bisect(marks, each) for each in wanted.tolist()], dtype=np.int64)
+        panel = np.asarray(np.searchsorted(total[1:-1], wanted, "right"), dtype=np.int64)
         rest, base = wanted - total[panel], low[panel]
         way = rest / (total[panel + 1] - total[panel]) * wide[panel]
         for _ in range(8):
