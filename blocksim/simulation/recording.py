@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Generic, Literal, cast
 
 import numpy as np
 
-from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Block, Blocks
+from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Blocks
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.record import from_record, to_record
@@ -25,7 +25,6 @@ from blocksim.simulation.archive import LARGEST_INSIDE, UNREADABLE, parts_of
 
 if TYPE_CHECKING:
     from blocksim.blocks.maker import Kind
-    from blocksim.blocks.space.assembly import SolidBlock
 
 FORMAT = 2
 WRITTEN = "written by blocksim simulate"
@@ -114,9 +113,11 @@ class Recording(Shown, Generic[Blocks]):
         deepest = self.quality.penetration
         if deepest is None:
             return None
-        blocks = cast("Any", self.assembly.blocks)
-        width_of: Any = _width_in_space if self.problem.in_space else _width
-        width = min(width_of(block) for block in blocks)
+        blocks: Any = self.assembly.blocks
+        if self.problem.in_space:
+            width = math.cbrt(min(sum(hull.volume for hull in each.hulls) for each in blocks))
+        else:
+            width = math.sqrt(min(signed_area(each.vertices) for each in blocks))
         return deepest * self.assembly.size / width
 
     def seconds(self, gravity: float) -> Array:
@@ -177,16 +178,6 @@ class Recording(Shown, Generic[Blocks]):
             np.savez_compressed(file, header=text, times=self.times, poses=self.poses)
 
         write_whole(path, write)
-
-
-def _width(block: Block) -> float:
-    """Return the root of a block's area [m]."""
-    return math.sqrt(signed_area(block.vertices))
-
-
-def _width_in_space(block: SolidBlock) -> float:
-    """Return the cube root of a block's volume [m]."""
-    return math.cbrt(sum(hull.volume for hull in block.hulls))
 
 
 Header = dict[str, Any]

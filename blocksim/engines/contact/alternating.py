@@ -11,6 +11,7 @@ Friction that is steep lets it go in circles.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from operator import itemgetter
 
 import numpy as np
 
@@ -124,10 +125,6 @@ def _balanced(
             tried.append(at(x + way / 2**halving))
             if tried[-1][0] < (1 - 0.25 / 2**halving) * size:
                 break
-        size, x, pushed = min(tried, key=_first)
+        size, x, pushed = min(tried, key=itemgetter(0))
         systems += 1
     return x, pushed, systems
-
-
-def _first(tried: tuple[float, Array, Array]) -> float:
-    return tried[0]
