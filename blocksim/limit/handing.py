@@ -106,8 +106,9 @@ def borne(
     rows: list[list[int]] = []
     stiff: list[int] = []
     for joint in joints:
+        along = exact.ways(joint)
         for point, share in zip(exact.ends[joint], shares[joint], strict=True):
-            arm, along = apart(point, exact.centres[block]), exact.ways(joint)
+            arm = apart(point, exact.centres[block])
             rows += [[*way, *moment(arm, way)] for way in along]
             stiff += [share] * len(along)
     columns, size = np.array(rows, dtype=object), len(wrench)

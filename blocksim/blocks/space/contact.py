@@ -130,7 +130,7 @@ def _common(first: Polyhedron, second: Polyhedron, normal: Array, slack: float) 
         crossing = len(ours) == len(theirs) == 2 and len(shared) == 1
         if not (crossing and _cross(ours, theirs)):
             return None
-    if needed == 3 and width(np.array(shared)) <= slack:
+    if needed == 3 and _is_narrow(shared, slack):
         return None
     return np.array(shared).reshape(-1, 2) @ across + (high + low) / 2 * normal
 
@@ -257,6 +257,15 @@ def _apart(points: list[Spot], slack: float) -> list[Spot]:
         else:
             at += 1
     return found
+
+
+def _is_narrow(around: list[Spot], slack: float) -> bool:
+    """Tell whether the least width of a convex polygon is no more than that."""
+    pairs = list(zip(around, around[1:] + around[:1], strict=True))
+    area = sum(_turn(around[0], *each) for each in pairs) / 2
+    # It is not below the area over half the way around.
+    wide = 2 * area > slack * sum(math.dist(*each) for each in pairs)
+    return not wide and width(np.array(around)) <= slack
 
 
 def _extent(points: Array) -> tuple[int, float]:

@@ -91,7 +91,8 @@ def _acting(exact: Exact, joint: int, forces: Sequence[Force], block: int) -> Wr
     total: Wrench = [0] * 6
     for point, force in zip(exact.ends[joint], forces, strict=True):
         turn = moment(apart(point, exact.centres[block]), force)
-        total = _sum(total, [sign * each for each in (*force, *turn)])
+        for at, each in enumerate((*force, *turn)):
+            total[at] += sign * each
     return total
 
 
@@ -128,7 +129,13 @@ def _handed_on(
             before, after = exact.sides[joint]
             other = before if after == block else after
             if other != SUPPORT:
-                left[other] = _sum(left[other], _acting(exact, joint, each, other))
+                if len(more) == 1:
+                    # All that is left goes on, which is told without its parts.
+                    arm = apart(exact.centres[block], exact.centres[other])
+                    handed = [*wrench[:3], *_sum(wrench[3:], moment(arm, wrench[:3]))]
+                else:
+                    handed = _acting(exact, joint, each, other)
+                left[other] = _sum(left[other], handed)
             old: list[Force] = added.get(joint, [[0, 0, 0]] * len(each))
             added[joint] = [*map(_sum, old, each)]
     for joint, each in added.items():
