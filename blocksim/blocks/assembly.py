@@ -137,9 +137,16 @@ class Bodies(ABC):
         (...) float
             Largest over the blocks of the translation or a corner's way by rotation.
         """
-        ways, turns = moved[..., : self.dimensions], moved[..., self.dimensions :]
-        shift, turn = (np.einsum("...i,...i", each, each) for each in (ways, turns))
-        return np.sqrt(np.maximum(shift, turn * (self.reach / self.size) ** 2)).max(axis=-1)
+        square = moved**2
+        first, *ways = (square[..., at] for at in range(self.dimensions))
+        turn, *turns = (square[..., at] for at in range(self.dimensions, self.columns))
+        shift, far = sum(ways, first), sum(turns, turn) * self._square_reach
+        return np.sqrt(np.maximum(shift, far)).max(axis=-1)
+
+    @cached_property
+    def _square_reach(self) -> Array:
+        """Of each block, (blocks,), in units of the size."""
+        return (self.reach / self.size) ** 2
 
 
 @dataclass(frozen=True, eq=False)
