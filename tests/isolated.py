@@ -35,7 +35,7 @@ ROOM = 8 << 30
 LIBRARIES = (
     "blocksim.cli.app", "blocksim.cli.asking", "blocksim.cli.commands",
     "blocksim.cli.converting", "blocksim.cli.rendering", "blocksim.cli.mapping",
-    "blocksim.cli.sweeping",
+    "blocksim.cli.reporting", "blocksim.cli.sweeping",
     "blocksim.kinds.files", "blocksim.view.video", "clarabel", "ezdxf", "highspy", "pymunk",
     "scipy.optimize",
 )  # fmt: skip

@@ -28,7 +28,7 @@ COMMANDS = {
     "fragility": "sweeping.fragility",
     "render": "commands.render",
     "convert": "converting.convert",
-    "report": "commands.report",
+    "report": "reporting.report",
     "validate": "studies.validate",
     "chart": "studies.chart",
     "suite export": "studies.export",

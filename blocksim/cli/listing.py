@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import platform
+from typing import TYPE_CHECKING
 
 import click
 
 from blocksim import __version__
 from blocksim.ask import doctor as installed
 from blocksim.ask.methods import METHODS
-from blocksim.blocks.entries import ExpectEntry
-from blocksim.blocks.vehicles import shipped_vehicles, vehicle_of
 from blocksim.cli.arguments import argument, option
 from blocksim.cli.options import named_options
 from blocksim.cli.output import say
@@ -18,7 +17,9 @@ from blocksim.cli.terminal import Table, show
 from blocksim.common.errors import InputError, perhaps
 from blocksim.common.fields import fields_of
 from blocksim.kinds import KINDS
-from blocksim.studies.validate import structures
+
+if TYPE_CHECKING:
+    from blocksim.blocks.entries import ExpectEntry
 
 EVERY = ", ".join(METHODS.shipped)
 
@@ -50,6 +51,9 @@ NUMBERS = {"mu", "blocks"}
 
 def list_scenarios() -> None:
     """List the structures and vehicles that come with blocksim."""
+    from blocksim.blocks.vehicles import shipped_vehicles, vehicle_of
+    from blocksim.studies.validate import structures
+
     headings = ("structure", "blocks", "mu", "known", "title", "source")
     built = Table(*headings, right=NUMBERS, below=3)
     for known in structures(quick=False):
