@@ -131,7 +131,9 @@ def verify(table: Any) -> str:
             require(not stands or abs(over) <= most, f"block {name}: forces do not balance")
             work += over * way - most * abs(way)
     require(stands or work > 0, "loads do no work")
-    return f"proved: {claim}, {len(blocks)} blocks and {len(problem['joints'])} joints"
+    counts = ((len(blocks), "block"), (len(problem["joints"]), "joint"))
+    words = (f"{count} {what}{'s' * (count != 1)}" for count, what in counts)
+    return f"proved: {claim}, {' and '.join(words)}"
 
 
 def checked(text: str) -> str:

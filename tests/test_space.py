@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from kind_cases import KINDS
 from matplotlib.collections import PolyCollection
+from matplotlib.text import Text
 from running import inside
 from space_cases import GROUND, NAMES, box, case, enclosed, problem_of, rotation, tower
 from structure_cases import case as plane_case
@@ -38,11 +39,13 @@ from blocksim import (
     extruded,
     structure_of,
 )
+from blocksim.blocks.acting import with_push
 from blocksim.blocks.space.polyhedron import frame
 from blocksim.common.fields import fields_of
 from blocksim.limit.space import can_rest, largest_load
 from blocksim.limit.space.cones import _left_over
 from blocksim.view.solidfigure import solid_figure
+from blocksim.view.solidscene import moving_box, supports_of
 from blocksim.view.style import JOINTS
 
 SOLID_KINDS = {name: kind for name, kind in KINDS.items() if kind.in_space}
@@ -510,6 +513,39 @@ def test_a_picture_shows_the_verdict_and_what_joints_do(tmp_path: Path) -> None:
     for words in ("COLLAPSES", "84 blocks, μ = 0.7", "hinge", "as it begins to fall"):
         assert words in drawn or words in "".join(re.findall(r"<!-- (.*?) -->", drawn))
     assert JOINTS[JointState.HINGE_INTRADOS].lower() in drawn.lower()
+
+
+def test_a_picture_says_a_push_and_towards_where() -> None:
+    """By what shares of the weight it is pushed, in its words."""
+    wall = with_push(replace(ReturnWall(friction=0.5).problem(), azimuth=math.radians(60)), 0.1)
+    words = [each.get_text() for each in solid_figure(blocksim.check(wall)).findobj(Text)]
+    assert any("a push of 0.1 of each weight towards 60° from x" in each for each in words)
+
+
+def test_an_arch_that_leans_is_drawn_on_its_springings() -> None:
+    """Unknown supports are slabs as wide as the joints on them, and wider, beyond the arch."""
+    arch = blocksim.CircularArch(half_angle_deg=70, eta=0.2, friction=0.7, voussoirs=9)
+    assembly = extruded(arch.problem()).assembly
+    slabs = supports_of(assembly, *moving_box(assembly))
+    joints = [each for each in assembly.joints if -1 in (each.before, each.after)]
+    assert len(slabs) == len(joints) == 2
+    for slab, joint in zip(slabs, joints, strict=True):
+        out = joint.normal if joint.after == -1 else -joint.normal
+        heights = (slab.corners - joint.points[0]) @ out
+        assert heights.min() == pytest.approx(0, abs=1e-12)
+        assert heights.max() > 0.1 * assembly.size
+        low, high = slab.box
+        assert (low <= joint.points + 1e-12).all()
+        assert (joint.points <= high + 1e-12).all()
+
+
+def test_a_fall_that_is_proved_is_said_without_bound() -> None:
+    """Of wedged blocks floating-point numbers rule out forces up to some weights."""
+    problem = structure_of(case("dome_12_7_falls")["scene"])
+    static = blocksim.equilibrium(problem)
+    assert static.gap > 0
+    assert static.proof is not None
+    assert "times all weight" not in blocksim.check(problem).reason
 
 
 def test_a_picture_has_every_block_within_its_frame() -> None:

@@ -106,8 +106,9 @@ def _words_in_space(static: SpatialEquilibrium) -> str:
         )
     if math.isinf(static.margin):
         return "no forces of equilibrium exist, even if contacts could pull"
-    most = 1 / static.gap if static.gap else math.inf
-    far = "" if math.isinf(most) else f" up to {most:.1g} times all weight"
+    # A proof in rational numbers knows no bound.
+    bounded = static.gap > 0 and static.proof is None
+    far = f" up to {1 / static.gap:.1g} times all weight" if bounded else ""
     return (
         f"no forces of equilibrium exist{far}: a contact would have to hold its block back "
         f"with {-100 * static.margin:.3g}% {own}"

@@ -69,6 +69,22 @@ def with_push(problem: Problem[Blocks], across: float) -> Problem[Blocks]:
     return replace(problem, dead=(*problem.dead, push))
 
 
+def is_push(problem: Problem[Any], load: Load) -> bool:
+    """Tell whether a load acts on all blocks, by the weight of each."""
+    return load.per_weight and len(load.blocks) == len(problem.assembly.blocks) > 1
+
+
+def push_of(problem: Problem[Any]) -> str | None:
+    """Say the push that is the only dead load of a problem, or return None."""
+    if len(problem.dead) != 1 or not is_push(problem, load := problem.dead[0]):
+        return None
+    (across, *aside), up = load.force[:-1].tolist(), load.force[-1]
+    way = f"to the {'right' if across > 0 else 'left'}"
+    if aside:
+        way = f"towards {math.degrees(math.atan2(aside[0], across)):.4g}° from x"
+    return f"{np.linalg.norm(load.force):.4g} of each weight{'' if up else f' {way}'}"
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Move:
     """How a support moves as supports spread or settle.

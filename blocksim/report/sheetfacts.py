@@ -9,7 +9,7 @@ import numpy as np
 
 from blocksim.arch.answers import ArchAnswer
 from blocksim.ask.check import Check
-from blocksim.blocks.acting import tilt_and_lean, towards
+from blocksim.blocks.acting import push_of, tilt_and_lean, towards
 from blocksim.blocks.joints import joint_names
 from blocksim.blocks.maker import Kind, Table
 from blocksim.blocks.problem import Problem
@@ -18,7 +18,7 @@ from blocksim.common.fields import fields_of
 from blocksim.limit.carried import Carried
 from blocksim.report.problems import weighed_arch
 from blocksim.report.sheettables import percent
-from blocksim.view.arrows import forces_of, push_of
+from blocksim.view.arrows import forces_of
 from blocksim.view.dimensions import (
     Angle,
     ForceUnit,

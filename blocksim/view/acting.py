@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from blocksim.arch.circular import GRAVITY
+from blocksim.blocks.acting import is_push
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.shaking import Shaking
 from blocksim.blocks.space.extruded import UP
-from blocksim.view.arrows import forces_of, is_push
+from blocksim.view.arrows import forces_of
 from blocksim.view.canvas import Label, Panel, Shape, arrow, colour, mixed, width_of
 from blocksim.view.stage import SolidStage, Stage
 from blocksim.view.style import DEAD, GROUND, INK, LIVE, PAPER, QUIET, THRUST

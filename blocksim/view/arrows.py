@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch, Polygon
 
+from blocksim.blocks.acting import push_of
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.road import fill_loads, profile_of, road_of
@@ -125,20 +126,6 @@ def forces_of(problem: Problem[Any], load: Load) -> list[tuple[Array, Array]]:
         )
         for block in load.blocks
     ]
-
-
-def is_push(problem: Problem[Any], load: Load) -> bool:
-    """Tell whether a load acts on all blocks, by the weight of each."""
-    return load.per_weight and len(load.blocks) == len(problem.assembly.blocks) > 1
-
-
-def push_of(problem: Problem[Any]) -> str | None:
-    """Say the push that is the only dead load of a problem, or return None."""
-    if len(problem.dead) != 1 or not is_push(problem, load := problem.dead[0]):
-        return None
-    across, up = load.force[0], load.force[-1]
-    way = "" if up else f" to the {'right' if across > 0 else 'left'}"
-    return f"{np.linalg.norm(load.force):.4g} of each weight{way}"
 
 
 def force_words(newtons: float) -> str:

@@ -12,7 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from blocksim.blocks.acting import tilt_and_lean
+from blocksim.blocks.acting import push_of, tilt_and_lean, towards
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
@@ -77,9 +77,12 @@ def loading_words(problem: Problem[Any]) -> list[str]:
     words = [] if problem.gravity.any() else ["no gravity"]
     if abs(tilt) > 1e-9:
         side = "" if tilt > 0 else " to the left"
+        side = f" towards {towards(problem):.4g}° from x" if problem.in_space else side
         words.append(f"tilted {abs(tilt):.4g}°{side}")
     if lean:
         words.append(f"gravity leans {lean:.3g}° out of the plane")
+    if problem.in_space and (push := push_of(problem)):
+        words.append(f"a push of {push}")
     if problem.live and problem.load:
         words.append(f"load factor {problem.load:.4g}")
     if problem.shaking is not None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from blocksim.blocks.assembly import Array
+from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.blocks.space.parting import parted
@@ -22,6 +22,8 @@ from blocksim.view.timeline import SEEN, UPRIGHT
 
 BED = 0.25
 """How far supports are drawn beyond what moves, in units of the size."""
+WIDER = 0.2
+"""By how much an unknown support is wider than its joint."""
 WAY = 0.15
 """How far a mechanism is drawn: its largest way in units of the size."""
 Marked = Sequence[tuple[Array, Array, str]]
@@ -156,9 +158,17 @@ def moving_box(assembly: SpatialAssembly) -> Array:
 
 
 def supports_of(assembly: SpatialAssembly, low: Array, high: Array) -> list[Polyhedron]:
-    """Return what stays, cut off beyond a box [m]."""
+    """Return what stays, cut off beyond a box [m].
+
+    Of what is not known a slab behind the joint, a little wider than it.
+    """
     bed = BED * assembly.size
     hulls = [hull for each in assembly.supports for hull in each.hulls]
+    for joint in assembly.joints:
+        if SUPPORT in (joint.before, joint.after) and joint.support is None:
+            out = joint.normal * (-bed if joint.before == SUPPORT else bed)
+            wide = joint.points + WIDER * (joint.points - joint.points.mean(axis=0))
+            hulls.append(Polyhedron(np.concatenate([wide, wide + out])))
     found = [_cut(hull, low - bed, high + bed) for hull in hulls]
     return [each for each in found if each is not None]
 

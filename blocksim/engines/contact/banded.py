@@ -158,9 +158,22 @@ class Bands:
 
     def solve_band(self, band: Array, right: Array) -> Array:
         """Solve (1 + matrix) x = right, the matrix as from `band`; it is used up."""
+        return self._solved(band, right)[0]
+
+    def solve_signed(self, band: Array, right: Array) -> tuple[Array, float]:
+        """Do the same, and return the sign of the determinant, too."""
+        x, factors, pivots = self._solved(band, right)
+        swaps = np.count_nonzero(pivots != np.arange(self.size))
+        below = np.count_nonzero(factors[2 * self._width] < 0)
+        return x, 1.0 if (swaps + below) % 2 == 0 else -1.0
+
+    def _solved(self, band: Array, right: Array) -> tuple[Array, Array, NDArray[np.integer]]:
         width, right = self._width, self._ordered(right)
-        _, _, x, failed = dgbsv(width, width, self._matrix(band), right, overwrite_ab=1)
-        return self._natural(x) if failed == 0 else np.full_like(right, np.nan)
+        factors, pivots, x, failed = dgbsv(
+            width, width, self._matrix(band), right, overwrite_ab=1
+        )
+        x = self._natural(x) if failed == 0 else np.full_like(right, np.nan)
+        return x, factors, pivots
 
     def _matrix(self, band: Array) -> Array:
         """Add 1 to a matrix as from `band`, in place."""

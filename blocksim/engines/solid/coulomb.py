@@ -11,9 +11,8 @@ A solution is looked for by Newton's method on springs that follow it: p is the 
 friction cone that is nearest, across its axis, to p - r u, with stiff springs r. They begin
 with what contacts did in the last step, or with forces of a cone programme, in which slip opens
 by mu times itself, less a guess of that. From nothing no slip is guessed: of rest and motion,
-where Coulomb's law allows both, that finds rest. Else they begin where alternating directions
-lead, which come near a solution from anywhere, of redundant contacts and of wedges, too. What
-these do not solve from nothing begins where slip settles (`dilation`).
+where Coulomb's law allows both, that finds rest. Where neither tells they begin
+where a path leads (`path`): beyond the limit of rest, and where wedges jam.
 """
 
 from __future__ import annotations
@@ -24,8 +23,9 @@ from dataclasses import replace
 import numpy as np
 
 from blocksim.blocks.assembly import Array
-from blocksim.engines.solid.dilation import IN_MOTION, dilating, settled, slip_of
-from blocksim.engines.solid.step import Answer, Step, projected
+from blocksim.engines.solid.dilation import IN_MOTION, dilating
+from blocksim.engines.solid.path import STEPS, followed
+from blocksim.engines.solid.step import Answer, Step, projected, slip_of
 
 STIFF = 1e5
 """Springs over the mean mass."""
@@ -36,11 +36,8 @@ ROUNDS, TRIES = 25, 60
 BRIEFLY = 25
 """Most of Newton's steps in motion, where another guess costs as much."""
 HALVINGS = 6
-TURNS, LOOKS, LAGS = 16000, 20, 5.0
-"""Most turns of alternating directions, after how many springs may change, and by how much more
-one of two lags than the other where they do."""
-PAUSES, LAWFUL = (1000, 4000), 3e-6
-"""Turns after which stiff springs are tried, and the residual in motion that then will do."""
+LAWFUL = 3e-6
+"""Residual in motion that will do where contacts did not go on as they did."""
 UNSOLVED = 1e-2
 """Residual of what is no solution."""
 NEAR = 1e-3
@@ -49,6 +46,8 @@ SOLVED, ENOUGH = 1e-9, 3e-8
 """Residual of a solution from nothing, and of one in motion."""
 LESS = 0.9997
 """Share of friction that is taken where that much did not tell."""
+RESTS = 1e-5
+"""Acceleration by a cone programme below which blocks may rest."""
 AT_REST = 1e-6
 """Velocity over the step of blocks at rest."""
 EXACT = 1e-13
@@ -57,14 +56,20 @@ FINELY, ROUGHLY = 1e-15, 1e-10
 """Imbalance over the forces at which Newton's method may end, from nothing and in motion."""
 
 
-def solve(step: Step, last: Array | None, turns: int = TURNS) -> Answer:
+def solve(step: Step, last: Array | None, most: int = STEPS) -> Answer:
     """Solve a step, from what was found in the last one or from nothing.
 
     `last`, (points, 3): Forces.
-    `turns`: Most turns of alternating directions, where nothing else leads to a solution.
+    `most`: Most steps along the path, where nothing else leads to a solution.
     """
     if not len(step.friction):
         return Answer(step.free, np.zeros((0, 3)), 0.0)
+    with step.bands.one_thread():
+        return _solved(step, last, most)
+
+
+def _solved(step: Step, last: Array | None, most: int) -> Answer:
+    """Do the same, where there are points of contact."""
     moves = last is not None
     # At rest what is left over would add up.
     briefly = moves and float(np.abs(step.drift).max()) > AT_REST
@@ -75,11 +80,11 @@ def solve(step: Step, last: Array | None, turns: int = TURNS) -> Answer:
         near = briefly or step.residual(step.pushed_by(last), last) <= NEAR
         if near:
             best = _gone_on(step, last, briefly=briefly)
-    guesses = _guesses(step, last, turns, briefly=briefly) if best.residual > enough else ()
+    guesses = _guesses(step, most, briefly=briefly) if best.residual > enough else ()
     enough = LAWFUL if briefly else enough
-    for guess in guesses:
+    for guess, springs in guesses:
         forces = guess
-        for stiff in STIFFER if briefly else (STIFF, *STIFFER):
+        for stiff in springs:
             found = _followed(step, forces, stiff=stiff, briefly=briefly)
             forces = found.forces
             if found.residual < best.residual:
@@ -104,78 +109,26 @@ def _as_last_resort(step: Step, best: Answer) -> Answer:
     return Answer(x, forces, max(best.residual, step.residual(x, forces)))
 
 
-def _guesses(step: Step, last: Array | None, turns: int, *, briefly: bool) -> Iterator[Array]:
-    """Give forces to begin with, the likeliest and cheapest first."""
-    opening = dilating(step, slip_of(step.drift), IN_MOTION) if briefly else dilating(step)
+def _guesses(
+    step: Step, most: int, *, briefly: bool
+) -> Iterator[tuple[Array, tuple[float, ...]]]:
+    """Give forces to begin with, the likeliest and cheapest first, and springs for each."""
+    if briefly:
+        opening = dilating(step, slip_of(step.drift), IN_MOTION)
+        every, rests = STIFFER, False
+    else:
+        opening = dilating(step)
+        every = STIFF, *STIFFER
+        rests = opening is None or float(np.abs(step.pushed_by(opening)).max()) < RESTS
     if opening is not None:
-        yield opening
-    if not briefly:
-        # Of rest near its limit the forces lie on the cones; with less friction within.
+        yield opening, every if rests or briefly else (STIFF,)
+    if rests:
+        # Near the limit of rest the forces lie on the cones; with less friction within.
         less = dilating(replace(step, friction=LESS * step.friction))
         if less is not None:
-            yield less
-    # Near the limit of rest, which is not to be had by now, no forces lead to motion.
-    begun = last if briefly and last is not None else np.zeros_like(step.drift)
-    forces = begun
-    for forces in _alternated(step, begun, turns):
-        yield forces
-    if last is None:
-        yield settled(step, forces)
-
-
-def _alternated(step: Step, p: Array, turns: int) -> Iterator[Array]:
-    """Give forces nearest to the law so far, on the way of alternating directions from some.
-
-    Blocks go where forces and springs let them, then each force to the nearest point of its
-    cone, in turn (Boyd and others 2011). What slips opens by mu times that, less what it last
-    slipped (Carpentier and others 2024). Springs double or halve where one lags.
-    """
-    bands, mu, stiff = step.bands, step.friction, 1.0
-    x = step.pushed_by(p)
-    factored = bands.factored(step.rows, np.full((1, 3), stiff))
-    best, least, opens = p, step.residual(x, p), np.zeros_like(p)
-    for turn in range(turns):
-        u, drift = step.velocities(x), step.drift.copy()
-        shift = mu * slip_of(u)
-        u[:, 0] += shift
-        drift[:, 0] += shift
-        pushed = p - stiff * u
-        p = _nearest(pushed, mu)
-        was, opens = opens, (p - pushed) / stiff
-        if factored is None:
-            break
-        x = factored(step.free + bands.pull(step.rows, 2 * p - pushed - stiff * drift))
-        if turn % LOOKS:
-            continue
-        residual = step.residual(step.pushed_by(p), p)
-        if residual < least:
-            best, least = p, residual
-        if least <= SOLVED:
-            break
-        if turn in PAUSES:
-            yield best
-        u = step.velocities(x)
-        u[:, 0] += mu * slip_of(u)
-        apart = float(np.abs(opens - u).max())
-        moved = stiff * float(np.abs(bands.pull(step.rows, opens - was)).max())
-        if apart > LAGS * moved and stiff < STIFF:
-            stiff *= 2
-        elif moved > LAGS * apart and stiff > 1 / STIFF:
-            stiff /= 2
-        else:
-            continue
-        factored = bands.factored(step.rows, np.full((1, 3), stiff))
-    yield best
-
-
-def _nearest(pushed: Array, friction: Array) -> Array:
-    """Return the nearest points of the cones of friction."""
-    across = slip_of(pushed)
-    within = across <= friction * pushed[:, 0]
-    along = np.maximum(pushed[:, 0] + friction * across, 0.0) / (1 + friction**2)
-    share = np.where(within, 1.0, friction * along / np.maximum(across, 1e-300))
-    pressure = np.where(within, pushed[:, 0], along)
-    return np.column_stack([pressure, share[:, None] * pushed[:, 1:]])
+            yield less, every
+    for forces in followed(step, most):
+        yield forces, every
 
 
 def _gone_on(step: Step, p: Array, *, briefly: bool) -> Answer:

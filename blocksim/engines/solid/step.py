@@ -95,3 +95,8 @@ def projected(pushed: Array, friction: Array) -> Array:
     found[slides, 1:] *= (most[slides] / across[slides])[:, None]
     found[found[:, 0] <= 0, 1:] = 0.0
     return found
+
+
+def slip_of(velocities: Array) -> Array:
+    """Return how fast points slip, (points,), of their velocities."""
+    return np.hypot(velocities[:, 1], velocities[:, 2])

@@ -29,16 +29,17 @@ from blocksim.engines.solid.between import (
     sides_of,
 )
 from blocksim.engines.solid.bodies import Bodies, Place
-from blocksim.engines.solid.coulomb import TURNS, solve
+from blocksim.engines.solid.coulomb import solve
 from blocksim.engines.solid.dilation import dilating
 from blocksim.engines.solid.meeting import Points, meet, near
 from blocksim.engines.solid.memory import Borne
+from blocksim.engines.solid.path import STEPS
 from blocksim.engines.solid.step import Step
 
 COARSE = 1e-5
 """Residual of a step that is halved."""
-BRIEFLY = 1000
-"""Most turns a step is looked for in which nothing closes: often there is none."""
+BRIEFLY = 150
+"""Most steps along a path to one in which nothing closes: often there is none."""
 HALVINGS = 5
 """How often a step that is not solved is halved."""
 NEARER, QUIET = 6, 16
@@ -214,7 +215,7 @@ class SolidBlocks:
         drift = now.along(self.bodies.root * velocities)
         drift[:, 0] += np.maximum(gaps, 0.0) / step
         every = np.ones(len(points.gaps), dtype=bool)
-        self._solve(points, friction, now, drift / step, every, middle, step, TURNS)
+        self._solve(points, friction, now, drift / step, every, middle, step, STEPS)
         if math.isfinite(self._residual):
             self._advance(step, 1.0)
 
@@ -233,7 +234,7 @@ class SolidBlocks:
         taken: NDArray[np.bool_],
         middle: Place,
         step: float,
-        turns: int = BRIEFLY,
+        most: int = BRIEFLY,
     ) -> None:
         """Solve a step's contacts, of points that are taken; what is found is kept."""
         bodies = self.bodies
@@ -243,7 +244,7 @@ class SolidBlocks:
             now.rows[at], now.sides[at], drift[at], bodies.pull(middle) + turning, friction[at]
         )
         borne = self._borne.at(points, self._body)[at]
-        found = solve(asked, borne, turns)
+        found = solve(asked, borne, most)
         self._borne = Borne.nothing(points)
         self._borne.forces[at] = found.forces
         self._residual = float(np.maximum(self._residual, found.residual))
