@@ -40,6 +40,7 @@ from blocksim import (
     structure_of,
 )
 from blocksim.blocks.acting import with_push
+from blocksim.blocks.space.extruded import is_extruded
 from blocksim.blocks.space.polyhedron import frame
 from blocksim.common.fields import fields_of
 from blocksim.limit.space import can_rest, largest_load
@@ -537,6 +538,31 @@ def test_an_arch_that_leans_is_drawn_on_its_springings() -> None:
         low, high = slab.box
         assert (low <= joint.points + 1e-12).all()
         assert (joint.points <= high + 1e-12).all()
+
+
+FLAT = {"arch_15_skew_0_crown", "block_topples_0", "harmonic_4_in", "harmonic_4_out"}
+"""Cases that are the same at any depth."""
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_is_the_same_at_any_depth_is_told(name: str) -> None:
+    """The straight arch that is loaded at its crown, a block, and boxes that reach out."""
+    problem = structure_of(case(name)["scene"])
+    assert is_extruded(problem) is (name in FLAT)
+
+
+def test_prisms_say_that_the_plane_would_do_unless_they_lean_out_of_it() -> None:
+    """Also where they are turned in space."""
+    arch = blocksim.CircularArch(half_angle_deg=70, eta=0.2, friction=0.7, voussoirs=9)
+    push = Load(force=np.array([1.0, 0.0, 0.0]), blocks=(4,), per_weight=True)
+    flat = replace(extruded(arch.problem()), live=(push,))
+    words = "it is the same at any depth: the plane has the same answer"
+    assert words in blocksim.check(flat).reason
+    assert is_extruded(replace(flat, gravity=np.array([0.1, 0.0, -1.0])))
+    assert not is_extruded(replace(flat, gravity=np.array([0.0, 0.1, -1.0])))
+    wall = replace(extruded(blocksim.Wall(friction=0.5).problem()), live=(push,))
+    count = len(wall.assembly.blocks) + len(wall.assembly.supports)
+    assert is_extruded(rebuilt(wall, rotation(3), 2.0, list(range(count))))
 
 
 def test_a_fall_that_is_proved_is_said_without_bound() -> None:

@@ -44,6 +44,10 @@ def unit(rates: Array, problem: Problem[Any]) -> Array:
     return rates / largest if largest > 0 else rates
 
 
+FLAT = "it is the same at any depth: the plane has the same answer"
+"""Of prisms in space."""
+
+
 def static_evidence(
     problem: Problem[Any], static: Equilibrium | SpatialEquilibrium
 ) -> tuple[Evidence, ...]:
@@ -51,9 +55,13 @@ def static_evidence(
     if isinstance(static, Equilibrium):
         found = Evidence("limit analysis", _words(static))
         return (found, *closing_of_verdict(problem, stands=static.exists))
-    found = Evidence("limit analysis", _words_in_space(static))
+    from blocksim.blocks.space.extruded import is_extruded
+
+    found = [Evidence("limit analysis", _words_in_space(static))]
     blocks = fewer(problem, static)
-    return (found,) if blocks is None else (found, halved(problem, blocks))
+    found += [] if blocks is None else [halved(problem, blocks)]
+    found += [Evidence("plane", FLAT)] if is_extruded(problem) else []
+    return tuple(found)
 
 
 def fewer(problem: Problem[Any], static: Equilibrium | SpatialEquilibrium) -> int | None:

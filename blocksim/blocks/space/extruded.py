@@ -14,6 +14,8 @@ from blocksim.blocks.space.polyhedron import Polyhedron
 
 UP = np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 1.0]])
 """The plane in space."""
+ALIKE = 1e-9
+"""Distance, over the size, and share of a force that are none."""
 
 
 def extruded(problem: Problem) -> Problem[SpatialAssembly]:
@@ -90,6 +92,39 @@ def prisms(assembly: Assembly) -> SpatialAssembly:
 def prism(polygon: Array, depth: float) -> Polyhedron:
     """Return a convex polygon as a prism of some depth, halved by the plane."""
     return Polyhedron(np.concatenate([_at(polygon, -depth / 2), _at(polygon, depth / 2)]))
+
+
+def is_extruded(problem: Problem[SpatialAssembly]) -> bool:
+    """Tell whether a problem in space is one of the plane: the same at any depth, as loads are.
+
+    Blocks are prisms as deep as each other, side by side, touch over the whole depth, and
+    what acts on them acts across, through the middle.
+    """
+    first = problem.assembly.blocks[0].hulls[0].faces
+    return any(_is_along(problem, face.normal) for face in first)
+
+
+def _is_along(problem: Problem[SpatialAssembly], way: Array) -> bool:
+    """Tell whether a problem is the same at any depth along a direction, (3,)."""
+    assembly = problem.assembly
+    near = ALIKE * assembly.size
+    loads = (*problem.dead, *problem.live)
+    pulls = [problem.gravity, *(each.force for each in loads)]
+    if any(abs(each @ way) > ALIKE * np.abs(each).max() for each in pulls):
+        return False
+    depths = assembly.blocks[0].hulls[0].corners @ way
+    low, high = float(depths.min()), float(depths.max())
+    middles = [each.centre for each in assembly.blocks]
+    middles += [each.point for each in loads if each.point is not None]
+    if any(abs(each @ way - (low + high) / 2) > near for each in middles):
+        return False
+    ends = [each.points @ way for each in assembly.joints]
+    ends += [hull.corners @ way for each in assembly.blocks for hull in each.hulls]
+    if any(np.minimum(abs(each - low), abs(each - high)).max() > near for each in ends):
+        return False
+    faces = (face for each in assembly.blocks for hull in each.hulls for face in hull.faces)
+    leans = (abs(float(face.normal @ way)) for face in faces)
+    return all(min(each, 1 - each) <= ALIKE for each in leans)
 
 
 def lifted(poses: Array) -> Array:
