@@ -319,6 +319,12 @@ def test_verdicts_in_space_are_proved(name: str) -> None:
         assert found.startswith(f"proved: {verdict.value}")
 
 
+def test_one_block_is_not_blocks() -> None:
+    """On level ground, by one joint."""
+    ((problem, verdict), _) = known_in_space("block_topples_20", 1e-3)
+    assert verify(proof_of(problem)) == f"proved: {verdict.value}, 1 block and 1 joint"
+
+
 @given(st.integers(0, 10**6))
 @settings(max_examples=15)
 def test_no_proof_in_space_is_refused(seed: int) -> None:

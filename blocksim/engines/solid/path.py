@@ -105,7 +105,8 @@ class _Path:
         even[:, 0] = math.sqrt(FIRST)
         self._at = Point(step.free, even, even, math.log(FIRST))
         self._look = self._looked(self._at)
-        self._begun, self._length = False, NEAR
+        self._begun = False
+        self._length: float = NEAR
 
     @property
     def tau(self) -> float:
