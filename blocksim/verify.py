@@ -112,16 +112,15 @@ def verify(table: Any) -> str:
         require(any(n) and p >= 0, f"joint {at}: no normal, or friction below 0")
         # Forces lie in the cone of friction, and motions in its dual.
         p, q = (p, q) if stands else (q, p)
-        moved = [rates[name] for name in sides]
         for point, force in zip(points, given[at] if stands else points, strict=True):
-            arms = [minus(point, centres.get(name, point)) for name in sides]
-            b, a = (minus(v[:3], cross(arm, v[3:])) for v, arm in zip(moved, arms, strict=True))
+            arms = {name: minus(point, centres.get(name, point)) for name in sides}
+            b, a = (minus(rates[k][:3], cross(arms[k], rates[k][3:])) for k in sides)
             way = vector(force) if stands else minus(b, a)
             along, side = sum(map(mul, way, n)), cross(way, n)
             held = q**2 * sum(map(mul, side, side)) <= (p * along) ** 2
             require(along >= 0 and held, f"joint {at}: it pulls, closes, or exceeds friction")
-            for name, arm, sign in zip(sides, arms, (1, -1), strict=True):
-                left[name] = plus(left[name], way, arm, sign if stands else 0)
+            for name, sign in zip(sides, (1, -1), strict=True):
+                left[name] = plus(left[name], way, arms[name], sign if stands else 0)
     for name, block in blocks.items():
         corners = block.get("polygons") or block.get("polyhedra") or [block["vertices"]]
         arms = [minus(vector(p), centres[name]) for part in corners for p in part]
@@ -131,9 +130,8 @@ def verify(table: Any) -> str:
             require(not stands or abs(over) <= most, f"block {name}: forces do not balance")
             work += over * way - most * abs(way)
     require(stands or work > 0, "loads do no work")
-    counts = ((len(blocks), "block"), (len(problem["joints"]), "joint"))
-    words = (f"{count} {what}{'s' * (count != 1)}" for count, what in counts)
-    return f"proved: {claim}, {' and '.join(words)}"
+    counts = f"{len(blocks)} blocks and {len(problem['joints'])} joints"
+    return f"proved: {claim}, " + re.sub(r"\b1 (\w+)s", r"1 \1", counts)
 
 
 def checked(text: str) -> str:
