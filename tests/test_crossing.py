@@ -43,24 +43,25 @@ def test_the_bogie_that_was_worked_out_by_hand() -> None:
 
 def test_which_axle_stands_where() -> None:
     """Places are those of the axles as they were given, whichever way the vehicle goes."""
+    bridge = Bridge(span=4.0, rise=1.5, thick=0.4, count=9, fill=0.5)
     given = "4@0,25@1.3,9@3.1"
-    found, weights = asked(EIGHT, given), (4, 25, 9)
+    found, weights = asked(bridge, given), (4, 25, 9)
     ways = {
         each["heading"]: each for each in found["places"] if float(each["load_factor"]) < 1e3
     }
     assert set(ways) == {"left", "right"}
     for place in ways.values():
         axles = np.array(place["axles_m"])
-        beside = min(at(EIGHT, axles + shift, weights) for shift in (-NEAR, NEAR))
+        beside = min(at(bridge, axles + shift, weights) for shift in (-NEAR, NEAR))
         assert beside == pytest.approx(place["load_factor"], rel=1e-6)
-    said = inside("bracket", *EIGHT.options(), "--vehicle", given).stdout.split()
+    said = inside("bracket", *bridge.options(), "--vehicle", given).stdout.split()
     wheel = said.index("25")
     assert float(said[wheel + 3]) == pytest.approx(found["worst"]["axles_m"][1], abs=1e-5)
 
 
 def test_strength_without_bound_on_friction() -> None:
     """A wheel that has hardly come is small beside what crushes; no joint slides at mu 2."""
-    arch = ("--span", "4", "--rise", "1.5", "--thickness", "0.45", "--voussoirs", "9")
+    arch = ("--span", "4", "--rise", "1.5", "--thickness", "0.45", "--voussoirs", "5")
     fill = ("--unit-weight", "22", "--fill", "0.5", "--dispersal", "boussinesq")
     crushes = (*arch, *fill, "--strength", "10", "--vehicle", "147@0")
     at_will, rough = (answered("bracket", *crushes, "--mu", mu)["high"] for mu in ("inf", "2"))
