@@ -47,6 +47,10 @@ def test_a_pushed_block_rocks_about_the_middle_of_what_is_crushed(strength: floa
     assert found == pytest.approx(weight * lever / HIGH, rel=1e-7)
 
 
+def test_a_load_that_is_none_is_borne_at_any_factor() -> None:
+    assert _factor(_pushed((0.0, 0.0), (0.0, HIGH)), 1e6) == float("inf")
+
+
 def test_a_block_pressed_in_its_middle_bears_its_strength() -> None:
     """Strength times area, less its own weight."""
     found = _factor(_pushed((0.0, -1.0), (WIDE / 2, HIGH)), 1e6)

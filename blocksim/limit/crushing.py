@@ -91,7 +91,8 @@ class Crushing:
         """
         cost = np.append(np.zeros(self._cones.count), -1.0)
         # The solver's tolerances are of numbers near 1: a wheel that has hardly come is small.
-        size = float(np.abs(right).sum() / np.abs(column).sum())
+        live = float(np.abs(column).sum())
+        size = float(np.abs(right).sum()) / live if live else 1.0
         found, shares = self._solve(cost, column * size, right, self._soil)
         values = np.append(found.values[:-1], found.values[-1:] * size)
         return replace(found, values=values), shares
@@ -146,7 +147,7 @@ class Crushing:
         """Find the least cost of parts, a factor on a column, and a share that is sought."""
         cones, count, loads, rows = self._cones, cost.size, int(soil.shape[1]), right.size
         beside = [] if column is None else [column]
-        beside += [sparse.csc_array((right.size, 1))] if sought else []
+        beside += [sparse.csc_array((rows, 1))] if sought else []
         balance: Any = sparse.hstack([cones.balance, *beside, soil], format="csc")
         shares = np.arange(count, count + loads)
         above = np.concatenate([np.flatnonzero(cones.bounded), shares])
@@ -158,14 +159,14 @@ class Crushing:
         )
         ends: list[Cone] = [("second-order", 3)] * self._full.size
         cost = np.append(cost, np.zeros(loads))
-        right = np.concatenate([right, np.zeros(above.size), np.ones(loads), bound])
+        every = np.concatenate([right, np.zeros(above.size), np.ones(loads), bound])
         # What defeats the solver in one scale it solves in the other.
         for scaled_first in (True, False):
             found = solved_cones(
                 sparse.csc_matrix((cost.size, cost.size)),
                 cost,
                 matrix,
-                right,
+                every,
                 [("zero", rows), ("nonnegative", above.size + loads), *ends],
                 finest=FINEST,
                 scaled=scaled_first,
@@ -175,15 +176,16 @@ class Crushing:
             if "Infeasible" in said and not sought:
                 return UNBOUNDED if "Dual" in said else NONE, np.zeros(loads)
             values, prices = np.array(found.x), -np.array(found.z)
-            lack = np.abs(matrix @ values + np.array(found.s) - right)
-            # What is lacking may lower the cost by its price; of a strength that is told.
+            lack = np.abs(matrix @ values + np.array(found.s) - every)
+            # What forces lack may lower the cost by its price. A strength is taken with that as
+            # its error.
             least = float(found.obj_val_dual) - float(np.abs(prices) @ lack)
             sure = float(found.obj_val_dual) if sought else least
             gap = (ROUGH if sought else FAITHFUL) * max(1.0, abs(float(found.obj_val)))
             if lack[:rows].max() < FAITHFUL and float(found.obj_val) - sure <= gap:
                 optimum = replace(NONE, values=values[:count], prices=prices, least=least)
                 return optimum, np.clip(values[count:], 0.0, 1.0)
-        if self._is_hopeless(column, right[:rows], sought=sought):
+        if self._is_hopeless(column, right, sought=sought):
             return NONE, np.zeros(loads)
         raise Unsolved
 
@@ -196,8 +198,9 @@ class Crushing:
         free = math.inf if column is not None else 0.0
         beside = sparse.csc_array((right.size, 1)) if column is None else column
         rigid, _ = self._bearing.most(beside, right, (-free, free))
-        if sought or not (rigid.exists or rigid.unbounded):
-            return not (rigid.exists or rigid.unbounded)
+        balances = rigid.exists or rigid.unbounded
+        if sought or not balances:
+            return not balances
         cost = np.zeros(self._cones.count + (column is not None) + 1)
         cost[-1] = 1.0
         found, _ = self._solve(cost, column, right, self._soil, sought=True)
@@ -217,7 +220,8 @@ class Crushing:
         v = np.concatenate([even, -even, np.zeros(size)])
         order = np.arange(3 * size).reshape(3, size).T.ravel()
         more = np.zeros((3 * size, count - self._cones.count))
-        more[:, -1:] += v[:, None] * sought
+        if sought:
+            more[:, -1] = v
         rows = sparse.hstack([rows, sparse.csr_array(more)], format="csr")
         return -rows[order], (0.0 if sought else 1.0) * v[order]
 
