@@ -92,8 +92,9 @@ class Bodies(ABC):
     @cached_property
     def reach(self) -> Array:
         """Largest distance of a corner from the centre of mass, shape (blocks,) [m]."""
-        count = np.array([len(each) for each in self.corners])
-        arms = np.concatenate(self.corners) - np.repeat(self.centres, count, axis=0)
+        corners = self.corners
+        count = np.array([len(each) for each in corners])
+        arms = np.concatenate(corners) - np.repeat(self.centres, count, axis=0)
         far = np.hypot.reduce(arms, axis=1)
         return frozen(np.maximum.reduceat(far, count.cumsum() - count), (-1,))
 

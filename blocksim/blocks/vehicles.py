@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -55,10 +56,19 @@ class Vehicle:
     @property
     def words(self) -> str:
         """Its title and its axles."""
-        axles = ", ".join(
-            f"{weight / 1e3:.4g} kN at {place:.4g} m" for place, weight in self.axles
-        )
+        axles = ", ".join(axle_words(self.axles))
         return f"{self.title}: {axles}" if self.title else axles
+
+
+def axle_words(
+    axles: Iterable[tuple[float, float]], *, weigh: int = 4, stand: int = 4
+) -> list[str]:
+    """Say of each axle what it weighs, and where it stands.
+
+    `axles`: Place [m] and weight [N] of each.
+    `weigh`, `stand`: Digits of weights and places.
+    """
+    return [f"{heavy / 1e3:.{weigh}g} kN at {x:.{stand}g} m" for x, heavy in axles]
 
 
 def shipped_vehicles() -> dict[str, Path]:

@@ -51,7 +51,7 @@ NUMBERS = {"mu", "blocks"}
 
 def list_scenarios() -> None:
     """List the structures and vehicles that come with blocksim."""
-    from blocksim.blocks.vehicles import shipped_vehicles, vehicle_of
+    from blocksim.blocks.vehicles import axle_words, shipped_vehicles, vehicle_of
     from blocksim.studies.validate import structures
 
     headings = ("structure", "blocks", "mu", "known", "title", "source")
@@ -65,7 +65,7 @@ def list_scenarios() -> None:
     vehicles = Table("vehicle", "axles", "title", "source", below=3)
     for name in shipped_vehicles():
         each = vehicle_of(name)
-        axles = ", ".join(f"{weight / 1e3:g} kN at {x:g} m" for x, weight in each.axles)
+        axles = ", ".join(axle_words(each.axles, weigh=6, stand=6))
         vehicles.add_row(name, axles, each.title, each.source)
     show(vehicles)
 

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, BinaryIO
 
 from blocksim.blocks.joints import joint_names
+from blocksim.blocks.vehicles import axle_words
 from blocksim.common.sheets import write_sheet
 from blocksim.common.version import __version__
 from blocksim.common.words import few
@@ -57,9 +58,8 @@ def crossing_lines(answer: Crossing) -> list[str]:
 
 def _axles(place: Place, vehicle: Vehicle) -> str:
     """Say where each axle stands."""
-    at = zip(place.axles, vehicle.axles, strict=True)
-    told = [f"{weight / 1e3:.4g} kN at {x:.6g} m" for x, (_, weight) in at]
-    return few(told, SHOWN)
+    weights = (weight for _, weight in vehicle.axles)
+    return few(axle_words(zip(place.axles, weights, strict=True), stand=6), SHOWN)
 
 
 def crossing_record(answer: Crossing) -> CrossingRecord:
