@@ -12,6 +12,11 @@ from own_bridge import Bridge
 from running import answered, inside
 from scipy.integrate import quad
 
+from blocksim import CircularArch
+from blocksim.ask.crossing import crossing
+from blocksim.blocks.vehicles import vehicle_of
+from blocksim.view.curvefigure import envelope_figure
+
 EIGHT = Bridge(span=8.0, rise=3.0, thick=0.45, count=31, fill=0.5)
 """Eight metres clear under half a metre of fill."""
 NEAR = 1e-9
@@ -206,3 +211,22 @@ def test_files_are_written_in_one_call(tmp_path: Path) -> None:
     assert "least" in done.stdout
     assert "EN 1991-2" in done.stdout
     assert (tmp_path / "e.dxf").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("vehicle", ["10@0,10@1.2", "30@0,100@2", "hb30"])
+def test_a_picture_shows_all_axles_and_hides_no_curve(vehicle: str) -> None:
+    """Legends lie above the curves, and the title within the figure."""
+    arch = CircularArch(span=4, rise=1, thickness=0.45, voussoirs=7, friction=0.6)
+    figure = envelope_figure(crossing(arch.problem(), vehicle_of(vehicle)))
+    figure.draw_without_rendering()
+    *curves, drawn = figure.axes
+    for axes in curves:
+        legend = axes.get_legend().get_window_extent()
+        assert legend.y0 >= axes.get_window_extent().y1
+        assert legend.y1 <= figure.bbox.y1
+    (axles,) = (each for each in drawn.lines if each.get_gid() == "axles")
+    (left, right), (low, high) = drawn.get_xlim(), drawn.get_ylim()
+    x, y = np.asarray(axles.get_data())
+    assert left < x.min() <= x.max() < right
+    assert low < y.min() <= y.max() < high
+    assert figure.texts[0].get_window_extent().x1 <= figure.bbox.x1

@@ -228,7 +228,8 @@ def test_the_page_has_a_part_on_structures(page: str) -> None:
     assert "gable , pymunk: collapses at 0.3 . Slack." in words
     assert "<b>bold</b>" in words
     assert "0.37053387, which rounds to 0.37, joints 0, 3, 5, 7" in words
-    assert "load factor at collapse: 0.37053387, published as 0.37, opening at" in words
+    assert "known load factor at collapse: 0.37053387, published as 0.37, opening at" in words
+    assert "known it collapses" in words
     assert "how it starts to fall at load factor 0.370904, by direct, enlarged" in words
     # Two more pictures of structures than of arches move, but not the catenary, which stands.
     part = page[page.index('<article id="case-2">') : page.index('<section id="how">')]

@@ -558,6 +558,10 @@ def test_prisms_say_that_the_plane_would_do_unless_they_lean_out_of_it() -> None
     flat = replace(extruded(arch.problem()), live=(push,))
     words = "it is the same at any depth: the plane has the same answer"
     assert words in blocksim.check(flat).reason
+    assert words in blocksim.bracket(flat, over="load").reason
+    assert words in blocksim.bracket(flat, over="tilt").reason
+    leaning = replace(flat, gravity=np.array([0.0, 0.02, -1.0]))
+    assert words not in blocksim.bracket(leaning, over="load").reason
     assert is_extruded(replace(flat, gravity=np.array([0.1, 0.0, -1.0])))
     assert not is_extruded(replace(flat, gravity=np.array([0.0, 0.1, -1.0])))
     wall = replace(extruded(blocksim.Wall(friction=0.5).problem()), live=(push,))

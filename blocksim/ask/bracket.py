@@ -13,6 +13,7 @@ from blocksim.ask.found import Found, by_family, by_threshold
 from blocksim.ask.methods import chosen_words
 from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
 from blocksim.ask.searches import proofs_beside
+from blocksim.ask.statics import flat_evidence
 from blocksim.blocks.assembly import Blocks
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import require
@@ -189,14 +190,16 @@ def _answer(found: Found, given: Taken, started: float) -> Bracket[Any]:
     search, chosen = found.search, found.chosen
     settings = aside("settings", given_words(given.settings))
     method = aside("method", chosen_words(given.method, chosen))
-    notes = tuple(Evidence("note", each) for each in found.told["problem"].notes)
+    problem = found.told["problem"]
+    flat = flat_evidence(problem)
+    notes = tuple(Evidence("note", each) for each in problem.notes)
     return Bracket(
         method=chosen.name,
         tol=given.tol,
         confirmed=search.confirmed,
         runs=search.runs,
         undecided=search.undecided,
-        evidence=found.evidence + settings + method + notes,
+        evidence=found.evidence + flat + settings + method + notes,
         blocks=search.blocks,
         splits=search.splits,
         wall_s=time.perf_counter() - started,

@@ -15,6 +15,7 @@ from blocksim.ask.statics import (
     VERDICTS,
     crushing_evidence,
     fewer,
+    flat_evidence,
     observed,
     static_evidence,
 )
@@ -87,7 +88,8 @@ def check(
     notes = tuple(Evidence("note", note) for note in answer.problem.notes)
     if problem.shaking is not None and bears_road(problem):
         notes += (Evidence("note", "fill and loads on the road have no mass that would shake"),)
-    answer = replace(answer, evidence=(*answer.evidence, *words, *notes))
+    flat = flat_evidence(answer.problem)
+    answer = replace(answer, evidence=(*answer.evidence, *flat, *words, *notes))
     if not problem.is_moving:
         answer = _with_rest(answer, found, given.progress, must_rest=must_rest)
     answer = replace(answer, wall_s=time.perf_counter() - started)

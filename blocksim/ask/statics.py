@@ -55,13 +55,17 @@ def static_evidence(
     if isinstance(static, Equilibrium):
         found = Evidence("limit analysis", _words(static))
         return (found, *closing_of_verdict(problem, stands=static.exists))
+    found, blocks = Evidence("limit analysis", _words_in_space(static)), fewer(problem, static)
+    return (found,) if blocks is None else (found, halved(problem, blocks))
+
+
+def flat_evidence(problem: Problem[Any]) -> tuple[Evidence, ...]:
+    """Say of prisms in space that the plane would do."""
+    if not problem.in_space:
+        return ()
     from blocksim.blocks.space.extruded import is_extruded
 
-    found = [Evidence("limit analysis", _words_in_space(static))]
-    blocks = fewer(problem, static)
-    found += [] if blocks is None else [halved(problem, blocks)]
-    found += [Evidence("plane", FLAT)] if is_extruded(problem) else []
-    return tuple(found)
+    return (Evidence("plane", FLAT),) if is_extruded(problem) else ()
 
 
 def fewer(problem: Problem[Any], static: Equilibrium | SpatialEquilibrium) -> int | None:

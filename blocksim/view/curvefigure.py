@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from textwrap import fill
 from typing import NamedTuple
 
 import matplotlib as mpl
@@ -25,9 +26,10 @@ from blocksim.view.style import FONT, INK, LIVE, QUIET, THRUST, VERDICTS
 DASHES = ("-", (0, (5, 2)))
 HIGHEST = 5.0
 """Load factor over the least one, up to which the curve is shown."""
-SIZE, CURVES, ASIDE, TALLEST = (7.6, 4.4), (2.0, 1.3), 0.8, 5.0
+SIZE, CURVES, ASIDE, TALLEST = (7.6, 5.3), (2.0, 1.3), 0.6, 5.0
+BROAD = 95
 """Width of an envelope, and height of its curves with their parts of it; room beside the
-drawing below them, and its greatest height [inches]."""
+drawing below them, and its greatest height [inches]; characters in a line of its title."""
 BEYOND = 3.0
 """How far values are drawn beyond the bracket, in its widths, and at least a tenth of it."""
 
@@ -81,7 +83,7 @@ def envelope_figure(answer: Crossing) -> Figure:
         rows[0].get_gridspec().set_height_ratios((*CURVES, tall))
         drawn.set_xlabel("middle of the axles [m]")
         title = f"{title_of(answer.problem)}: {printable(answer.vehicle.words)}"
-        figure.suptitle(literal(title), x=0.02, ha="left", fontsize=10)
+        figure.suptitle(fill(literal(title), BROAD), x=0.02, ha="left", fontsize=10)
     return figure
 
 
@@ -102,7 +104,7 @@ def _factors(axes: Axes, answer: Crossing) -> None:
         at = _middle(answer.worst.axles)
         axes.plot(at, least, "o", color=LIVE, ms=5, gid="worst", label=f"least {least:.6g}")
     axes.set_ylabel("load factor")
-    axes.legend(frameon=False, ncols=3, loc="lower center")
+    _above(axes, columns=3)
 
 
 def _thrusts(axes: Axes, answer: Crossing) -> None:
@@ -119,12 +121,18 @@ def _thrusts(axes: Axes, answer: Crossing) -> None:
             axes.plot(x, values, color=THRUST, ls=dashes, lw=wide,
                       label=f"{'least' if name == 'min' else 'greatest'}, heading {heading}",
                       gid=f"thrust-{name}-{heading}")  # fmt: skip
-    axes.set_ylabel("thrust at the crown [kN]")
+    axes.set_ylabel("crown thrust [kN]")
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(frameon=False, ncols=2, fontsize=7)
+        _above(axes, columns=4)
     else:
         axes.text(0.5, 0.5, "it falls, or thrust has no meaning, at every place", color=QUIET,
                   ha="center", transform=axes.transAxes)  # fmt: skip
+
+
+def _above(axes: Axes, *, columns: int) -> None:
+    """Put the legend above a curve, where it hides nothing."""
+    axes.legend(frameon=False, ncols=columns, loc="lower right", bbox_to_anchor=(1, 1),
+                borderaxespad=0, fontsize=7)  # fmt: skip
 
 
 def _structure(axes: Axes, answer: Crossing) -> tuple[Array, Array]:
