@@ -509,3 +509,34 @@ def test_what_is_pushed_falls_where_it_falls_first(over: str) -> None:
     for side, code in ((stands, 0), (-stands, 1)):
         value = repr(found["limit"] * (1 + 1e-4 * side))
         assert inside("check", *asked, *mu, f"--{over}", value).returncode == code
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_hinges_get_into_line_where_forces_are_not_told(way: int) -> None:
+    """Nearest to where they do, forces are 1e8 weights; the span there is a closed form."""
+    left, right, thickness = 23.179528219390512, 37.35109487916007, 1.1150774474915741
+    heavy = [-2.912683493140377, -2.8984710144715002]
+    load = [-0.825213354902256, -0.2794086876275421]
+    corners = [
+        (radius * math.sin(angle), radius * math.cos(angle))
+        for radius, angle in (
+            (4 - thickness / 2, -math.radians(left)),
+            (4 + thickness / 2, math.radians((right - 2 * left) / 3)),
+            (4 - thickness / 2, math.radians(right)),
+        )
+    ]
+    low, top, high = corners
+    stretched = math.dist(low, top) + math.dist(top, high)
+    flat = math.sqrt(stretched**2 - (high[1] - low[1]) ** 2) - (high[0] - low[0])
+    if way < 0:
+        left, right = right, left
+        heavy, load = [-x for x in heavy[::-1]], [-x for x in load[::-1]]
+    sizes = {"thickness": thickness, "radius": 4, "left_deg": left, "right_deg": right}
+    given = [f"--with {name}={value}" for name, value in sizes.items()]
+    asked = (
+        f"check circular-arch --mu inf {' '.join(given)} --with voussoirs=3 --unit-weight 22 "
+        f"--fill 0.5 --fill-unit-weight 18 --fill-layer 0.05 24 --fill-region {heavy[0]} "
+        f"{heavy[1]} 15 --patch-load {load[0]} {load[1]} 20"
+    )
+    for share, code in ((1 - 1e-6, 0), (1 + 1e-6, 1)):
+        answered(*asked.split(), "--spread", repr(share * flat), code=code)

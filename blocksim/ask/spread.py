@@ -76,9 +76,11 @@ class Spreading:
             # On two planes; what moves are supports that are drawn.
             asked = remade(asked, asked.maker.but(on_supports=True))
         supports = asked.assembly.supports
-        allowed = "left out where supports move: blocks are rigid there"
-        require(not bears(asked), "fill_passive", "given", "left out where supports move")
-        require(asked.strength is None, "strength", "given", allowed)
+        allowed = "left out where supports move"
+        require(not bears(asked), "fill_passive", "given", allowed)
+        crush = asked.strength
+        value = f"{(crush or 0.0) / 1e6:g} MPa"
+        require(crush is None, "strength", value, f"{allowed}: blocks are rigid there")
         if asked.moves:
             return asked
         joints = asked.assembly.springings

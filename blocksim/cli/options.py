@@ -137,6 +137,8 @@ def settings_of(given: list[str] | None) -> dict[str, float]:
 NAMED = {
     "parameters": "--with",
     "friction": "--mu",
+    "shaking": "--shake",
+    "moves": "--spread",
     **{field: f"--{option}" for option, field in PARAMETERS.items()},
 }
 """Options that are not called as their fields."""

@@ -88,7 +88,8 @@ def anything_asked(
             ("--over", "tilt") if tilts else ("--tilt", math.radians(loading.tilt or 0.0))
         )
         require_upright(found, name, turn)
-    made = found if found.in_space else extruded(found)
+    with named_options():
+        made = found if found.in_space else extruded(found)
     made = replace(made, azimuth=math.radians(loading.azimuth or 0.0))
     if late and loading.tilt:
         made = made.tilted(math.radians(loading.tilt))

@@ -17,6 +17,7 @@ Contacts neither slip nor part here. Where they would, the path ends and says so
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -175,9 +176,12 @@ def _where(
         value = frame.value + share * (ahead.value - frame.value)
         return blocks.carried(frame, value, frame.poses + share * way)
 
-    if measure(at(0.0)) <= 0:
-        return at(0.0)
-    return at(float(brentq(lambda share: measure(at(share)), 0.0, 1.0, xtol=1e-13)))
+    def left(share: float) -> float:
+        found = measure(at(share))
+        # Hinges about to get into line press without bound, which the programme does not tell.
+        return 0.0 if math.isnan(found) else found
+
+    return at(0.0 if left(0.0) <= 0 else float(brentq(left, 0.0, 1.0, xtol=1e-13)))
 
 
 def _falls(blocks: Displaced, frame: Frame) -> tuple[Frame | None, Frame | None, Lost | None]:
