@@ -119,7 +119,7 @@ def family_of(problem: Problem[Any], over: str) -> Family[Any]:
     ----------
     problem : Problem
     over : str
-        One of `families_of`.
+        One of `families_of`; makers call mu `friction`.
 
     Raises
     ------
@@ -127,6 +127,7 @@ def family_of(problem: Problem[Any], over: str) -> Family[Any]:
         If there is no such parameter, or nothing to multiply.
     """
     known = families_of(problem)
+    over = "mu" if over == "friction" else over
     if over in FAMILIES and (problem.is_planar or over in known):
         return FAMILIES[over](problem if over == "lean" else asked_as(problem))
     kind = problem.maker
