@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from worlds import hold
 
-from blocksim import CircularArch, Mode, Problem, Verdict, bracket
+from blocksim import CircularArch, Mode, Problem, Verdict, Wall, bracket
 from blocksim.arch.circular import ETA_MAX
 from blocksim.ask.search import Answer, Bisection
 from blocksim.simulation.observation import Held
@@ -147,6 +147,12 @@ def test_where_nothing_stands(method: str) -> None:
     told = bracket(arch, method=method).arch
     assert (told.eta_low, told.eta_high, told.centre) == (2, None, None)
     assert (told.mode, told.eta_theory) == (Mode.SS, None)
+
+
+def test_what_stands_without_friction_stands_down_to_the_end_of_the_range() -> None:
+    found = bracket(Wall(friction=0.8), over="mu")
+    assert (found.low, found.high, found.limit, found.confirmed) == (None, 0.0, 0.0, None)
+    assert "forces of equilibrium exist down to 0" in str(found.evidence)
 
 
 @pytest.mark.parametrize("confirm", [True, False])

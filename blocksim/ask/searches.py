@@ -206,7 +206,7 @@ def by_programmes(
         return Search(reason="no forces of equilibrium exist at any value")
     if math.isinf(exact):
         return Search(reason="forces of equilibrium exist at all values")
-    if exact < family.low:
+    if exact < family.low or (rises and exact == family.low):
         least = family.low
         reason = f"forces of equilibrium exist down to {least:.6g}"
         return Search(stands=least, runs=1, reason=reason)
