@@ -161,9 +161,10 @@ class TakesForces(World, Protocol):
 
         Parameters
         ----------
-        forces : (joints, 2, 2) float
-            At the inner and the outer end of each joint, along its normal and its tangent,
-            as they act on `after` [mean weights].
+        forces : (joints, 2, 2) or (points, 3) float
+            At the inner and the outer end of each joint, along its normal and its tangent, as
+            they act on `after`; in space at the points of `JointPoints`, along their axes
+            [mean weights].
         """
         ...
 
@@ -261,7 +262,8 @@ class Engine(Method):
     build : callable
         Puts the blocks of a problem into the engine, all contacts closed, at rest.
     rule_in_space, build_in_space : callable or None
-        The same of blocks in space; None where it moves none there.
+        The same of blocks in space, in worlds that are `TakesForces`; None where it moves none
+        there.
     most_friction : float
         Friction above which the engine takes this instead.
     shakes : bool

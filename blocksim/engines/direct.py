@@ -53,7 +53,12 @@ USUAL = Settings(
 
 
 USUAL_IN_SPACE = replace(
-    USUAL, still=STILL_IN_SPACE, rest=REST_IN_SPACE, residual=RESIDUAL_IN_SPACE
+    USUAL,
+    # What is not found at once begins with forces of equilibrium, if there are any.
+    unaided=1,
+    still=STILL_IN_SPACE,
+    rest=REST_IN_SPACE,
+    residual=RESIDUAL_IN_SPACE,
 )
 
 

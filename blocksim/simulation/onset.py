@@ -155,7 +155,7 @@ def onset(world: World, simulation: Simulation[Any], progress: Progress = silent
     if begun is not None:
         cast("TakesForces", world).begin(begun)
     may_rest = may_slide = False
-    takes = engine.takes_forces and settings.unaided is not None
+    takes = simulation.takes_forces and settings.unaided is not None
     helped = begun is not None or not takes
     # Even an engine that looks for rest can miss it: in space, and without bound on friction,
     # where forces may be wedged, a thousand times their pressures.
@@ -173,7 +173,7 @@ def onset(world: World, simulation: Simulation[Any], progress: Progress = silent
             unasked, helped = False, helped or slow
             if not may_rest and engine.keeps_impulses and slow and not decided:
                 forces = look.least()
-            if forces is not None and engine.takes_forces:
+            if forces is not None and simulation.takes_forces:
                 cast("TakesForces", world).begin(forces)
                 sweeps, begun, may_slide = first, forces, slides
                 continue

@@ -245,6 +245,11 @@ class Simulation(Generic[Blocks]):
         return self.problem.length_name
 
     @property
+    def takes_forces(self) -> bool:
+        """Whether its world can be given forces to begin with."""
+        return self.engine.takes_forces or self.problem.in_space
+
+    @property
     def blocks(self) -> int:
         """How many blocks the engine is given."""
         return len(self.simulated.assembly.blocks)

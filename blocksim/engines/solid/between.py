@@ -10,10 +10,15 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import FaceJoint, SpatialAssembly
 from blocksim.engines.solid.bodies import Bodies
 from blocksim.engines.solid.hulls import Hulls
-from blocksim.engines.solid.meeting import Points, meet, near
+from blocksim.engines.solid.meeting import Points, apart, meet, near
 
 ROUGH = 1e3
 """Friction without a bound is taken as this."""
+ALONG = 0.99
+"""Cosine from which on a point of contact is one of a joint."""
+ROUNDED = 4e-3
+"""Overlap of edges that is none: most of what two blocks come to before they are said to fall
+[size]."""
 
 
 class FrictionBetween:
@@ -54,33 +59,46 @@ def as_built(bodies: Bodies, reach: float | Array) -> tuple[Points, NDArray[np.b
     ways = np.broadcast_to(reach, len(hulls.owner))
     pairs = near(hulls, ways)
     points = meet(hulls, pairs, ways[pairs].sum(axis=1))
-    joined = {tuple(sorted(sides_of(each))) for each in bodies.problem.assembly.joints}
+    normals: dict[tuple[int, ...], list[Array]] = {}
+    for each in bodies.problem.assembly.joints:
+        normals.setdefault(tuple(sorted(sides_of(each))), []).append(each.normal)
     body = body_of(hulls)
     sides = np.sort(np.stack([body[points.before], body[points.after]]), axis=0).T.tolist()
-    return points, np.array([tuple(each) in joined for each in sides], dtype=bool)
+    along = [
+        np.abs(normals.get(tuple(side), np.zeros((1, 3))) @ normal).max() > ALONG
+        for side, normal in zip(sides, points.normals, strict=True)
+    ]
+    return points, np.array(along, dtype=bool)
 
 
 class DrawnApart:
-    """Gaps of joints as they are drawn, which count as none."""
+    """Gaps of joints as they are drawn, which count as none, and edges, which are rounded.
+
+    Hulls that touch as they are drawn and have no joint there, along an edge or at a corner,
+    bear nothing. Sharp as they are drawn, they would wedge as soon as both slide by a hair:
+    one along the other's face, the other across it.
+    """
 
     def __init__(self, bodies: Bodies) -> None:
         self._count, assembly = len(bodies.hulls.owner), bodies.problem.assembly
         widest = max((abs(each.gap) for each in assembly.joints), default=0.0) / assembly.size
-        points, joined = as_built(bodies, widest + 1e-6)
-        self._keys, place = np.unique(self._pairs(points), return_inverse=True)
+        hulls, reach = bodies.hulls.placed(*bodies.built), widest + 1e-6
+        pairs = near(hulls, np.full(self._count, reach))
+        self._keys = self._pairs(*pairs[apart(hulls, pairs) <= 2 * reach].T)
         self._gaps = np.full(len(self._keys), -np.inf)
+        points, joined = as_built(bodies, reach)
+        points = points.at(joined)
+        place = np.searchsorted(self._keys, self._pairs(points.before, points.after))
         np.maximum.at(self._gaps, place, points.gaps)
-        # What touches nothing as it is drawn has its gap.
-        self._gaps[place[~joined]] = 0.0
+        self._gaps[np.isinf(self._gaps)] = -ROUNDED
 
-    def _pairs(self, points: Points) -> NDArray[np.int64]:
-        first, second = (f(points.before, points.after) for f in (np.minimum, np.maximum))
-        return first * self._count + second
+    def _pairs(self, one: NDArray[np.int64], other: NDArray[np.int64]) -> NDArray[np.int64]:
+        return np.minimum(one, other) * self._count + np.maximum(one, other)
 
     def at(self, points: Points) -> Array:
         """Return the gap as drawn between the hulls of each point."""
         if not len(self._keys):
             return np.zeros(len(points.gaps))
-        keys = self._pairs(points)
+        keys = self._pairs(points.before, points.after)
         at = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
         return np.where(self._keys[at] == keys, self._gaps[at], 0.0)

@@ -77,9 +77,12 @@ def _solved(step: Step, last: Array | None, most: int) -> Answer:
     near = last is None
     if last is not None:
         enough = ENOUGH
-        near = briefly or step.residual(step.pushed_by(last), last) <= NEAR
+        x = step.pushed_by(last)
+        best = Answer(x, last, step.residual(x, last))
+        near = briefly or best.residual <= NEAR
         if near:
-            best = _gone_on(step, last, briefly=briefly)
+            found = _gone_on(step, last, briefly=briefly)
+            best = found if found.residual < best.residual else best
     guesses = _guesses(step, most, briefly=briefly) if best.residual > enough else ()
     enough = LAWFUL if briefly else enough
     for guess, springs in guesses:
@@ -137,8 +140,6 @@ def _gone_on(step: Step, p: Array, *, briefly: bool) -> Answer:
     What closes, sticks and slides there is taken to do so still, which stiff springs would not
     see where forces and accelerations do not quite match.
     """
-    if not briefly:
-        return _followed(step, p)
     u = step.drift.copy()
     u[p[:, 0] > 0, 0] = 0.0
     given = _given_way(p - STIFF * u, step.friction)

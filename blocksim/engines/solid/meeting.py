@@ -116,6 +116,11 @@ def meet(hulls: Hulls, pairs: Places, margin: Array) -> Points:
     return points.at(points.gaps <= most)
 
 
+def apart(hulls: Hulls, pairs: Places) -> Array:
+    """Return how far pairs are apart along the normal of a face, at most, (pairs,)."""
+    return _by_faces(hulls, pairs).gap
+
+
 def _joined(found: list[Points]) -> Points:
     return Points._make(np.concatenate(each) for each in zip(*found, strict=True))
 

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 from blocksim.blocks.assembly import Array
 from blocksim.engines.solid.meeting import Points
 
+OPEN = 100.0
+"""How much farther away a point of contact counts for its gap, over that gap."""
+
 
 class Borne(NamedTuple):
     """Points of a step, and the forces there, (points, 3), along their axes."""
@@ -26,13 +29,15 @@ class Borne(NamedTuple):
         """Return the forces at the points of the next step, (points, 3).
 
         As a corner slides over the rim of a face its point ends, and others begin. What a
-        point bore that is no more goes on to the nearest one of the same two bodies.
+        point bore that is no more goes on to the nearest closed one of the same two bodies.
 
         `body`, (hulls,): Of which body each is part.
         """
         found = np.zeros((len(points.gaps), 3))
         _, was, now = np.intersect1d(self.points.keys, points.keys, return_indices=True)
-        found[now] = self.forces[was]
+        # The ways across jump where a normal is as near to one axis as to another.
+        turns = np.matmul(points.axes[now], self.points.axes[was].transpose(0, 2, 1))
+        found[now] = np.einsum("pij,pj->pi", turns, self.forces[was])
         lost = self.forces[:, 0] > 0
         lost[was] = False
         if not lost.any():
@@ -43,6 +48,7 @@ class Borne(NamedTuple):
             (were[:, :, None] == each[:, None]).all(axis=0) for each in (are, are[::-1])
         )
         apart = np.linalg.norm(left.places[:, None] - points.places[None], axis=2)
+        apart += OPEN * np.abs(points.gaps)
         apart[~(along | against)] = np.inf
         each = np.flatnonzero(np.isfinite(apart).any(axis=1))
         nearest = apart[each].argmin(axis=1) if len(each) else each

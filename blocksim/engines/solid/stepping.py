@@ -94,6 +94,7 @@ class SolidBlocks:
         self._body = body_of(self.bodies.hulls)
         self._borne = Borne.nothing(self._points(self._place, 0.0)[0])
         self._residual = self._penetration = 0.0
+        self._given: Array | None = None
         self._quiet = QUIET
         self._balance = Balance(
             bodies.potential, lambda _, moved: bodies.kinetic(moved), self._place
@@ -104,12 +105,16 @@ class SolidBlocks:
 
         Returns (blocks, 6).
         """
-        found = solve(at_rest(self.bodies), None)
+        found = solve(at_rest(self.bodies), self._given)
         self._begin(found.forces)
         self._residual = max(self._residual, found.residual)
         rates = found.x.reshape(-1, 6) / self.bodies.root
         rates[:, 3:] = np.einsum("bij,bj->bi", self._place.turns[:-1], rates[:, 3:])
         return rates
+
+    def begin(self, forces: Array) -> None:
+        """Begin anew, with forces at the points of joints, (points, 3) [mean weights]."""
+        self._given, self._residual = forces, 0.0
 
     def advance(self, steps: int) -> None:
         """Let the blocks move."""
@@ -133,19 +138,21 @@ class SolidBlocks:
         """Begin a motion with the forces at the points of joints, (points, 3)."""
         contacts, assembly = self._contacts, self.bodies.problem.assembly
         points, _ = self._points(self._place, 0.0)
-        places = assembly.points / assembly.size
-        pushes = np.einsum("pi,pij->pj", forces, contacts.axes[contacts.joint])
-        after = np.array([sides_of(each)[1] for each in assembly.joints])[contacts.joint]
-        self._borne = Borne.nothing(points)
+        places, axes = assembly.points / assembly.size, contacts.axes[contacts.joint]
+        pushes = np.einsum("pi,pij->pj", forces, axes)
+        joined = np.array([sides_of(each) for each in assembly.joints])[contacts.joint]
         sides = np.stack([self._body[points.before], self._body[points.after]], axis=1)
-        for at in range(len(points.keys)):
-            near = np.linalg.norm(places - points.places[at], axis=1) < SAME
-            for each in np.flatnonzero(near).tolist():
-                # Points of other joints may lie at the same place.
-                joint = assembly.joints[int(contacts.joint[each])]
-                if set(sides_of(joint)) == set(sides[at].tolist()):
-                    sign = 1.0 if after[each] == sides[at, 1] else -1.0
-                    self._borne.forces[at] = sign * points.axes[at] @ pushes[each]
+        ours, theirs = np.sort(sides, axis=1), np.sort(joined, axis=1)
+        self._borne = Borne.nothing(points)
+        for at, (place, push) in enumerate(zip(places, pushes, strict=True)):
+            # Points of other joints may lie at the same place, of the same blocks, too.
+            near = np.linalg.norm(points.places - place, axis=1) < SAME
+            near &= (ours == theirs[at]).all(axis=1)
+            along = np.where(near, np.abs(points.normals @ axes[at, 0]), 0.0)
+            if near.any():
+                best = int(along.argmax())
+                sign = 1.0 if joined[at, 1] == sides[best, 1] else -1.0
+                self._borne.forces[best] += sign * points.axes[best] @ push
 
     def _move(self, step: float) -> None:
         """Go on for a time."""
