@@ -14,7 +14,7 @@ from blocksim.simulation.shaken import outcome
 from blocksim.simulation.verdict import Verdict
 from blocksim.view.canvas import Label, Panel, Shape, arrow, colour, width_of
 from blocksim.view.drawing import friction_words, loading_words
-from blocksim.view.sheet import factor_words
+from blocksim.view.sheet import factor_words, title_of
 from blocksim.view.stage import SolidStage, Stage
 from blocksim.view.style import DASHES, QUIET
 from blocksim.view.timeline import UPRIGHT
@@ -63,7 +63,7 @@ def title(
     built = [*problem.measures, counted(blocks, "block")]
     built.append(friction_words(problem.mu))
     facts = [verdict, *(loading_words(problem) or factor_words(stage.carried))]
-    head = printable(problem.title) or "   ".join(built)
+    head = title_of(problem) if problem.title else "   ".join(built)
     facts[1:1] = built if problem.title else []
     facts[1:1] = ["still moving as it ends"] if moving else []
     run = stage.recording

@@ -14,6 +14,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Arc, Patch
+from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Bbox
 
 from blocksim.blocks.assembly import Array
@@ -32,7 +33,7 @@ from blocksim.view.structure import (
     draw_supports,
     road_level,
 )
-from blocksim.view.style import FONT, INK, QUIET, THRUST
+from blocksim.view.style import FONT, INK, QUIET, STONE, THRUST
 from blocksim.view.thrustlines import force_sizes
 
 INCH = 25.4
@@ -241,7 +242,8 @@ def _draw_numbers(axes: Axes, sheet: Sheet, layout: Layout) -> None:
             continue
         x, y = block.centre.tolist()
         axes.text(x, y, literal(name), ha="center", va="center", fontsize=NUMBERED,
-                  color=QUIET, zorder=7, gid=f"number-{index}", clip_on=True)  # fmt: skip
+                  color=INK, zorder=9.5, gid=f"number-{index}", clip_on=True,
+                  path_effects=[withStroke(linewidth=1.6, foreground=STONE)])  # fmt: skip
     if problem.road and not sheet.pressed:
         top = road_level(problem)
         axes.plot(0.0, top, marker=7, ms=5, color=INK, zorder=9, gid="origin")
