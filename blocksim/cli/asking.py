@@ -20,7 +20,7 @@ from blocksim.blocks.joints import joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.vehicles import vehicle_of
 from blocksim.cli.arguments import option
-from blocksim.cli.given import Crossed, Given, Loading
+from blocksim.cli.given import Crossed, Given, Loading, given_of
 from blocksim.cli.options import (
     CASES,
     EXIT_CODES,
@@ -146,9 +146,13 @@ def bracket(
     sought = of_arch and not (crosses or spatial or loading.given)
     if sought:
         refuse({"eta": given.eta, "ratio": given.ratio}, why="left out: the least is sought")
+    acting = {"lean": given.lean, **given_of(loading, "load", "push", "spread", "tilt")}
+    refuse(
+        {name: acting[name] for name in acting if name == over}, why="left out: it is sought"
+    )
     push, loading = loading.push, replace(loading, push=None)
-    allowed = "left out beside --vehicle" if crosses else "left out: it is sought"
-    require(push is None or not (crosses or over == "push"), "--push", push, allowed)
+    allowed = "left out beside --vehicle"
+    require(push is None or not crosses, "--push", push, allowed)
     problem = anything_asked(
         scene, given, loading, spatial=spatial, tilts=over == "tilt",
         pushes=over == "push" or push is not None, thick=not sought, sought=sought,
