@@ -1,7 +1,13 @@
-"""Truth by another way: equations of the paper that blocksim does not use itself."""
+"""Truth by another way: what the paper prints, and equations blocksim does not use itself."""
+
+import tomllib
+from pathlib import Path
 
 import numpy as np
 
+_PRINTED = Path(__file__).with_name("validation") / "cocchetti_rizzi_2024.toml"
+PAPER = tomllib.loads(_PRINTED.read_text("utf-8"))
+"""Its numbers, each with its figure, table or section."""
 Value = float | np.ndarray
 
 

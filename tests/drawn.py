@@ -3,10 +3,13 @@
 import json
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import ezdxf
+import numpy as np
+from images import turning
 
-Polygon = Sequence[tuple[float, float]]
+Polygon = Sequence[Sequence[float]]
 
 
 def square(x: float, y: float, wide: float = 1.0, tall: float = 1.0) -> list[list[float]]:
@@ -34,6 +37,28 @@ def wall(courses: int = 8, bricks: int = 5) -> list[Polygon]:
     return found
 
 
+def bricks(courses: int, count: int, long: float = 0.25, high: float = 0.125) -> list[Polygon]:
+    """Draw a bed, and a wall on it in running bond: one brick less in every second course."""
+    laid = [
+        square((k + course % 2 / 2) * long, course * high, long, high)
+        for course in range(courses)
+        for k in range(count - course % 2)
+    ]
+    return [square(-count * long, -high, 3 * count * long, high), *laid]
+
+
+def rounded(
+    polygons: Sequence[Polygon], degrees: float, decimals: int, mu: float = 0.6, **more: object
+) -> dict[str, Any]:
+    """Return a structure file of polygons turned by an angle, its coordinates rounded."""
+    turned = [np.asarray(each) @ turning(np.radians(degrees)).T for each in polygons]
+    blocks = [
+        {"id": at, "vertices": each.round(decimals).tolist(), "fixed": at == 0}
+        for at, each in enumerate(turned)
+    ]
+    return {"friction": mu, "blocks": blocks, **more}
+
+
 def structure(blocks: Sequence[Polygon], friction: float = 0.7) -> dict:
     """Return the same as a structure file."""
     ground = {"id": "ground", "vertices": GROUND, "fixed": True}
@@ -46,6 +71,14 @@ def new_dxf(unit: int = 6, version: str = "R2010") -> ezdxf.document.Drawing:
     for layer in ("blocks", "supports", "notes"):
         document.layers.add(layer)
     return document
+
+
+def on_ground(unit: int = 6) -> tuple[Any, Any]:
+    """Return a drawing with the ground on its layer of supports, and where to draw on."""
+    document: Any = new_dxf(unit)
+    space = document.modelspace()
+    space.add_lwpolyline(GROUND, close=True, dxfattribs={"layer": "supports"})
+    return document, space
 
 
 def write_dxf(

@@ -1,12 +1,33 @@
-"""The same problem in another form: mirrored, or with blocks and joints in another order."""
+"""The same problem in another form: elsewhere, mirrored, or in another order."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from blocksim import Joint, Load, Problem
+from blocksim import Assembly, Joint, Load, Problem
 
 FLIP = np.array([-1.0, 1.0])
+
+
+def turning(angle: float) -> np.ndarray:
+    """Matrix that turns a vector counter-clockwise."""
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+def moved(assembly: Assembly, by: Sequence[float]) -> Assembly:
+    """Return the same blocks built elsewhere [m]."""
+    return replace(
+        assembly,
+        blocks=tuple(
+            replace(each, vertices=each.vertices + by, centre=each.centre + by)
+            for each in assembly.blocks
+        ),
+        joints=tuple(
+            replace(each, inner=each.inner + by, outer=each.outer + by)
+            for each in assembly.joints
+        ),
+    )
 
 
 def mirrored(problem: Problem) -> Problem:

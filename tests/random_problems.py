@@ -16,7 +16,7 @@ from numpy.random import Generator
 
 from blocksim import Arch, CircularArch, InputError, Load, Problem, equilibrium, structure_of
 from blocksim.arch.limit import least_thickness
-from blocksim.ask import family_of
+from blocksim.ask.families import family_of
 from tests.assemblies import KINDS as ASSEMBLIES
 from tests.assemblies import sketch
 

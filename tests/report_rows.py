@@ -1,7 +1,8 @@
-"""Rows of a validation as made up for tests of the report, in no time."""
+"""Rows of a validation as made up for tests of the report, in no time; a page read again."""
 
 import math
 from dataclasses import replace
+from html.parser import HTMLParser
 
 import numpy as np
 from recorded import recorded
@@ -80,3 +81,32 @@ def rows() -> list[Row]:
             miss="no bracket; nothing tried 1 % below",
         ),
     ]
+
+
+class Page(HTMLParser):
+    """Elements with their attributes, and the words in between."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.words: list[str] = []
+        self.open: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        while self.open and self.open.pop() != tag:
+            pass
+
+    def handle_data(self, data: str) -> None:
+        if not {"script", "style"} & set(self.open):
+            self.words.append(data)
+
+    def all(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.elements if name == tag]

@@ -4,6 +4,7 @@ import contextlib
 import csv
 import io
 import json
+import re
 import subprocess
 import sys
 import time
@@ -42,9 +43,9 @@ def small_files(largest: int) -> str:
     )
 
 
-def inside(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+def inside(*words: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Run a command within this process, which has loaded its libraries once for all."""
-    out, complaints = io.StringIO(), io.StringIO()
+    arguments, out, complaints = [*map(str, words)], io.StringIO(), io.StringIO()
     with (
         contextlib.chdir(cwd or Path.cwd()),
         mock.patch.object(sys, "argv", ["blocksim", *arguments]),
@@ -58,15 +59,31 @@ def inside(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProc
     return subprocess.CompletedProcess(arguments, code, out.getvalue(), complaints.getvalue())
 
 
+def ran(*words: object, code: int = 0, cwd: Path | None = None) -> str:
+    """What a command says that ends with a code and complains of nothing."""
+    done = inside(*words, cwd=cwd)
+    assert (done.returncode, done.stderr) == (code, ""), done
+    return done.stdout
+
+
+def refused(*words: object, code: int = 2, cwd: Path | None = None) -> str:
+    """What a command says of wrong input: one line that can be printed, and nothing else."""
+    done = inside(*words, cwd=cwd)
+    assert (done.returncode, done.stdout) == (code, ""), done
+    assert re.fullmatch(r"blocksim: [^\n]{1,1000}\n", done.stderr)
+    assert done.stderr[:-1].isprintable()
+    return done.stderr
+
+
 def parameters(command: str) -> list[click.Parameter]:
     """Return what a command takes, as click has it."""
     found = cli.app.get_command(click.Context(cli.app), command)
     return [] if found is None else found.params
 
 
-def answered(*arguments: str, code: int | None = 0, cwd: Path | None = None) -> dict[str, Any]:
+def answered(*words: object, code: int | None = 0, cwd: Path | None = None) -> dict[str, Any]:
     """What a command says with `--json`, and ends with that code, or with any."""
-    done = inside(*arguments, "--json", cwd=cwd)
+    done = inside(*words, "--json", cwd=cwd)
     assert code is None or done.returncode == code, done.stderr
     return json.loads(done.stdout)
 

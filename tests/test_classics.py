@@ -6,24 +6,20 @@ Each limit is a closed form, written here.
 import math
 from collections.abc import Callable, Mapping
 from itertools import product
+from typing import Any
 
 import numpy as np
 import pytest
+from drawn import square
+from shapely import Polygon
 
 from blocksim import Problem, Verdict, assembly_of_polygons, check
 
-FLOOR = np.array([(-20.0, -1.0), (20.0, -1.0), (20.0, 0.0), (-20.0, 0.0)])
+FLOOR = square(-20.0, -1.0, 40.0, 1.0)
 
 
-def box(left: float, low: float, width: float, height: float) -> np.ndarray:
-    right, high = left + width, low + height
-    return np.array([(left, low), (right, low), (right, high), (left, high)])
-
-
-def standing(
-    *blocks: np.ndarray, fixed: tuple[np.ndarray, ...] = (FLOOR,), mu: float
-) -> Problem:
-    every = [*fixed, *blocks]
+def standing(*blocks: Any, fixed: tuple[Any, ...] = (FLOOR,), mu: float) -> Problem:
+    every = [np.array(each) for each in (*fixed, *blocks)]
     return Problem(assembly=assembly_of_polygons(every, fixed=range(len(fixed))), mu=mu)
 
 
@@ -42,11 +38,7 @@ def card_house(share: float) -> Problem:
     outer_foot = low + thick * across
     outer = outer_foot + along * (-outer_foot[0] / along[0])
     card = np.array([low, inner, outer, outer_foot])
-    x, y = card.T
-    following = np.roll(card, -1, axis=0)
-    cross = x * following[:, 1] - y * following[:, 0]
-    centre = ((x + following[:, 0]) * cross).sum() / (3 * cross.sum())
-    least = (centre - low[0]) / outer[1]
+    least = (Polygon(card).centroid.x - low[0]) / outer[1]
     mirrored = (card * [-1, 1])[::-1]
     return standing(card, mirrored, mu=least / share)
 
@@ -54,13 +46,13 @@ def card_house(share: float) -> Problem:
 def pyramid(share: float) -> Problem:
     """Bricks 3-2-1 on a table: its topmost brick slides first where friction is low."""
     rows = [(0.5 * row + place, 0.5 * row) for row in range(3) for place in range(3 - row)]
-    bricks = [box(left, low, 1.0, 0.5) for left, low in rows]
+    bricks = [square(left, low, 1.0, 0.5) for left, low in rows]
     return standing(*bricks, mu=0.4).tilted(math.atan(0.4 * share))
 
 
 def double_domino(share: float) -> Problem:
     """Two dominoes near each other overturn on a table tilted by their slenderness."""
-    tall = [box(0.6 * place, 0.0, 0.2, 1.0) for place in range(2)]
+    tall = [square(0.6 * place, 0.0, 0.2, 1.0) for place in range(2)]
     return standing(*tall, mu=0.7).tilted(math.atan(0.2 * share))
 
 
@@ -77,7 +69,7 @@ def leaning_plank(share: float) -> Problem:
     plank = np.array([foot, foot + long * along, foot + long * along + thick * across,
                       foot + thick * across])  # fmt: skip
     right = float(plank[:, 0].max())
-    wall = box(right, 0.0, 1.0, 3.0)
+    wall = square(right, 0.0, 1.0, 3.0)
     centre, top = plank.mean(axis=0), plank[1]
     # (1 + mu^2) x of the centre = mu y + mu^2 x of the top
     a, b, c = top[0] - centre[0], top[1], -centre[0]
@@ -87,11 +79,11 @@ def leaning_plank(share: float) -> Problem:
 
 def cantilever(share: float) -> Problem:
     """Four equal bricks reach 1/2 (1 + 1/2 + 1/3 + 1/4) of their length beyond the table."""
-    table = box(-5.0, -1.0, 5.0, 1.0)
+    table = square(-5.0, -1.0, 5.0, 1.0)
     reach, bricks = 0.0, []
     for row in range(4):
         reach += share / (2 * (4 - row))
-        bricks.append(box(reach - 1.0, 0.3 * row, 1.0, 0.3))
+        bricks.append(square(reach - 1.0, 0.3 * row, 1.0, 0.3))
     return standing(*bricks, fixed=(table,), mu=0.7)
 
 

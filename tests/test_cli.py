@@ -1,12 +1,11 @@
 """The command line keeps its contract: exit codes, one line of error, JSON alone."""
 
-import json
 import subprocess
 from pathlib import Path
 
 import click
 import pytest
-from running import COMMANDS, PROGRAM, answered, inside, parameters
+from running import COMMANDS, PROGRAM, answered, inside, parameters, ran
 
 from blocksim import load_recording
 
@@ -20,10 +19,7 @@ ARCH = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "27")
 def test_check_answers_with_its_exit_code(
     method: str, eta: str, verdict: str, code: int
 ) -> None:
-    done = inside("check", *ARCH, "--eta", eta, "--method", method, "--json")
-    answer = json.loads(done.stdout)
-    assert done.returncode == code
-    assert done.stderr == ""
+    answer = answered("check", *ARCH, "--eta", eta, "--method", method, code=code)
     assert answer["verdict"] == verdict
     assert answer["arch"]["mode"] == (None if code == 0 else "rrr")
     assert len(answer["joints"]) == 28
@@ -68,10 +64,10 @@ def test_an_option_given_twice_is_taken_twice_or_refused() -> None:
 
 def test_options_that_may_be_given_twice_are_taken_twice() -> None:
     # Axles and patches are in test_road, what `bracket --out` writes in test_crossing.
-    wall = ("check", "wall", "--mu", "1", "--json")
+    wall = ("check", "wall", "--mu", "1")
     sizes = ("--with", "courses=2", "--with", "length=3")
     blocks = [
-        json.loads(inside(*wall, *given).stdout)["problem"]["blocks"]
+        answered(*wall, *given)["problem"]["blocks"]
         for given in ((), sizes[:2], sizes[2:], sizes)
     ]
     assert len(set(blocks)) == 4
@@ -107,21 +103,19 @@ def test_a_full_disk_is_no_verdict() -> None:
 
 def test_simulate_writes_a_recording_of_the_time_asked_for(tmp_path: Path) -> None:
     out = tmp_path / "run.npz"
-    done = inside("simulate", *ARCH, "--eta", "0.1", "--seconds", "0.5", "--out", str(out))
+    said = ran("simulate", *ARCH, "--eta", "0.1", "--seconds", "0.5", "--out", out)
     recording = load_recording(out)
-    assert done.returncode == 0
-    assert recording.state_hash in done.stdout
+    assert recording.state_hash in said
     assert recording.seconds(9.81)[-1] == pytest.approx(0.5, abs=0.02)
     assert recording.displacement[-1] > 0.1
     assert [path.name for path in tmp_path.iterdir()] == ["run.npz"]
 
 
 def test_settings_of_an_engine_can_be_given(tmp_path: Path) -> None:
-    asked = ("check", *ARCH, "--eta", "0.1", "--method", "pymunk", "--json")
+    asked = ("check", *ARCH, "--eta", "0.1", "--method", "pymunk")
     # No engine of impulses has converged after so few sweeps.
-    done = inside(*asked, "--set", "hold_sweeps=100")
-    assert done.returncode == 3
-    assert json.loads(done.stdout)["reason"].endswith("; hold_sweeps 100 as given")
+    reason = answered(*asked, "--set", "hold_sweeps=100", code=3)["reason"]
+    assert reason.endswith("; hold_sweeps 100 as given")
     answer = answered("bracket", *ARCH, "--method", "direct", "--set", "step=0.005")
     arch = answer["arch"]
     assert arch["eta_low"] < arch["eta_limit"] < arch["eta_high"]

@@ -1,12 +1,12 @@
 """Span, rise and thickness in, both forms out; nonsense refused in one line."""
 
-import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 from arches import least
+from drawn import written
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from running import answered, inside
@@ -130,15 +130,15 @@ def test_a_file_in_metres(tmp_path: Path) -> None:
     arch = load(path).maker.shape
     assert arch.half_angle == pytest.approx(ALPHA, rel=EXACT)
     assert (arch.weight, arch.specific_weight) == ("sector", 22_000)
-    one = answered("check", str(path))
+    one = answered("check", path)
     two = answered("check", *ASKED, "--unit-weight", "22")
     assert one.pop("problem") == {**two.pop("problem"), "title": "circular-arch"}
     assert {**one, "wall_s": 0} == {**two, "wall_s": 0}
     # One measure given instead of the file's: the others stay.
-    told = answered("check", str(path), "--thickness", "0.6")
+    told = answered("check", path, "--thickness", "0.6")
     wanted = {"span_m": 8.0, "rise_m": 3.0, "thickness_m": 0.6}
     assert {key: told["problem"][key] for key in wanted} == pytest.approx(wanted, rel=EXACT)
-    told = answered("check", str(path), "--alpha", "90", code=1)
+    told = answered("check", path, "--alpha", "90", code=1)
     assert told["arch"]["half_angle_deg"] == 90
     assert told["problem"]["radius_m"] == arch.radius
 
@@ -156,8 +156,7 @@ def test_structures_take_an_angle_of_friction_and_a_unit_weight(tmp_path: Path) 
     # In a file of blocks, unless they have weights of their own.
     block = {"id": "b", "vertices": [[0, 0], [2, 0], [2, 1], [0, 1]], "depth": 0.5}
     floor = {"id": "f", "vertices": [[-1, -1], [3, -1], [3, 0], [-1, 0]], "fixed": True}
-    path = tmp_path / "block.json"
-    path.write_text(json.dumps({"friction": 0.5, "blocks": [floor, block]}))
+    path = written(tmp_path / "block.json", {"friction": 0.5, "blocks": [floor, block]})
     bed = told(str(path), "--unit-weight", "20")["joints"][0]  # type: ignore[index]
     assert bed["normal_force"] == pytest.approx(20_000 * 2 * 0.5, rel=1e-9)
 

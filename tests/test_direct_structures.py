@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from images import turning
 from structure_cases import case, first, names, of_each_kind
 from threadpoolctl import ThreadpoolController
 from worlds import (
@@ -81,9 +82,8 @@ def placed(problem: Problem, world: Blocks, points: np.ndarray, block: int = 0) 
     """Where points of a block [m] are now."""
     size = problem.assembly.size
     x, y, angle = world.poses()[block]
-    cos, sin = math.cos(angle), math.sin(angle)
     arms = points - problem.assembly.blocks[block].centre
-    return arms @ np.array([[cos, sin], [-sin, cos]]) + size * np.array([x, y])
+    return arms @ turning(angle).T + size * np.array([x, y])
 
 
 FLOOR = {"id": "floor", "vertices": [[-20, -1], [20, -1], [20, 0], [-20, 0]], "fixed": True}
@@ -176,8 +176,7 @@ def test_a_force_at_a_point_goes_with_its_block() -> None:
         turned = float(world.poses()[0, 2])
         if turned < -0.5:
             break
-        cos, sin = math.cos(turned), math.sin(turned)
-        spin = np.array([[cos, -sin], [sin, cos]]) - np.eye(2)
+        spin = turning(turned) - np.eye(2)
         centre = spin @ (np.array([0.5, 1.0]) - pivot)
         work = force @ (spin @ (point - pivot)) - 9.81 * centre[1]
         speed = math.sqrt(2 * work / inertia) * math.sqrt(size / 9.81)
@@ -347,8 +346,7 @@ def test_corners_open_and_slide_and_are_no_length() -> None:
         assert [each.state for each in classify(assembly, built + shift)] == states
     # The bar turns about its foot: there it is closed, and it leaves the wall.
     angle, arm = 0.01, built[0, :2]
-    cos, sin = math.cos(angle), math.sin(angle)
-    turned = np.array([[*(np.array([[cos, -sin], [sin, cos]]) @ arm), angle]])
+    turned = np.array([[*(turning(angle) @ arm), angle]])
     assert [each.state for each in classify(assembly, turned)] == [closed, opened]
 
 

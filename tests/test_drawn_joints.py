@@ -1,7 +1,6 @@
 """Joints of drawings as people have them: rounded, with gaps and overlaps, or far too many."""
 
 import json
-import math
 import re
 from collections import Counter
 from collections.abc import Sequence
@@ -12,9 +11,10 @@ import ezdxf
 import numpy as np
 import pytest
 import shapely
+from drawn import Polygon, bricks, rounded, written
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from running import inside
+from running import answered, ran, refused
 
 from blocksim import (
     InputError,
@@ -26,46 +26,11 @@ from blocksim import (
     structure_of,
 )
 
-Corners = list[tuple[float, float]]
-
-
-def bricks(courses: int, count: int, long: float = 0.25, high: float = 0.125) -> list[Corners]:
-    """Return a bed, and a wall in running bond on it."""
-    wide = count * long
-    polygons = [[(-wide, -high), (2 * wide, -high), (2 * wide, 0.0), (-wide, 0.0)]]
-    for course in range(courses):
-        for k in range(count - course % 2):
-            x, y = (k + course % 2 / 2) * long, course * high
-            polygons.append([(x, y), (x + long, y), (x + long, y + high), (x, y + high)])
-    return polygons
-
-
-def drawn(
-    polygons: Sequence[Corners], degrees: float, decimals: int, mu: float = 0.6, **more: object
-) -> dict[str, Any]:
-    """Return a structure file of polygons turned by an angle, its coordinates rounded."""
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    blocks = [
-        {
-            "id": at,
-            "vertices": [
-                [round(x * c - y * s, decimals), round(x * s + y * c, decimals)]
-                for x, y in polygon
-            ],
-            "fixed": at == 0,
-        }
-        for at, polygon in enumerate(polygons)
-    ]
-    return {"friction": mu, "blocks": blocks, **more}
-
 
 def asked(table: dict[str, Any], tmp_path: Path, *options: str) -> dict[str, Any]:
     """Ask a file by command."""
-    path = tmp_path / "wall.json"
-    path.write_text(json.dumps(table))
-    done = inside("check", str(path), "--method", "limit", "--json", *options)
-    assert done.returncode in {0, 1}, done.stderr
-    return json.loads(done.stdout)
+    path = written(tmp_path / "wall.json", table)
+    return answered("check", path, "--method", "limit", *options, code=None)
 
 
 # A wall slides where its bed is steeper than friction: tan 20 deg is 0.364, tan 33 deg 0.649.
@@ -75,7 +40,7 @@ ANGLES = [1, 10, 20, 45]
 @pytest.mark.parametrize("degrees", ANGLES)
 @pytest.mark.parametrize("decimals", [3, 4, 5])
 def test_a_wall_of_few_decimals_is_answered(tmp_path: Path, degrees: int, decimals: int):
-    said = asked(drawn(bricks(4, 4), degrees, decimals), tmp_path)
+    said = asked(rounded(bricks(4, 4), degrees, decimals), tmp_path)
     assert said["problem"]["joints"] == 32
     assert said["verdict"] == ("stands" if degrees < 30 else "collapses")
     assert f"rounded to {10.0**-decimals:g} m" in said["reason"]
@@ -85,7 +50,7 @@ def test_a_wall_of_few_decimals_is_answered(tmp_path: Path, degrees: int, decima
 
 
 def _answers(degrees: int, decimals: int) -> tuple[Verdict, int]:
-    problem = structure_of(drawn(bricks(4, 4), degrees, decimals))
+    problem = structure_of(rounded(bricks(4, 4), degrees, decimals))
     return check(problem, method="limit").verdict, len(problem.assembly.joints)
 
 
@@ -95,7 +60,7 @@ def test_rounding_changes_no_verdict(degrees: int, decimals: int):
     assert _answers(degrees, decimals) == _answers(degrees, 15)
 
 
-def spread(polygons: Sequence[Corners], by: float) -> list[Corners]:
+def spread(polygons: Sequence[Polygon], by: float) -> list[Polygon]:
     """Move each brick up and to the right by as much as its number says: gaps, no overlaps."""
     return [
         [
@@ -110,12 +75,10 @@ def spread(polygons: Sequence[Corners], by: float) -> list[Corners]:
 
 @pytest.mark.parametrize("gap", [0.003, -0.003])
 def test_gaps_and_overlaps_are_closed_as_asked_and_listed(tmp_path: Path, gap: float):
-    table = drawn(spread(bricks(3, 3), gap), 7.0, 15)
-    path = tmp_path / "wall.json"
-    path.write_text(json.dumps(table))
-    refused = inside("check", str(path))
-    assert refused.returncode == 2
-    assert "close the gap" in refused.stderr or "--tolerance" in refused.stderr
+    table = rounded(spread(bricks(3, 3), gap), 7.0, 15)
+    path = written(tmp_path / "wall.json", table)
+    said = refused("check", path)
+    assert "close the gap" in said or "--tolerance" in said
     said = asked(table, tmp_path, "--tolerance", "0.005")
     assert said["verdict"] == "stands"
     assert said["problem"]["joints"] == 16
@@ -135,7 +98,7 @@ def test_closed_gaps_are_marked_in_the_still(gap: float):
     Of a drawing merely rounded there are none.
     """
     wall = spread(bricks(3, 3), gap)
-    closed = structure_of(drawn(wall, 7.0, 15, tolerance=0.005))
+    closed = structure_of(rounded(wall, 7.0, 15, tolerance=0.005))
     marked = marks(closed)
     assert {name for name in marked if "size" not in name} == {f"gap-{k}" for k in range(16)}
     sizes = [words for name, words in marked.items() if "size" in name]
@@ -148,9 +111,9 @@ def test_closed_gaps_are_marked_in_the_still(gap: float):
         level += closed
         stack.append([(0.0, level), (0.5, level), (0.5, level + 0.2), (0.0, level + 0.2)])
         level += 0.2
-    other = marks(structure_of(drawn(stack, 0.0, 15, tolerance=0.005)))
+    other = marks(structure_of(rounded(stack, 0.0, 15, tolerance=0.005)))
     assert [other[name] for name in other if "size" in name] == [f"{1000 * gap / 3:+.3g} mm"]
-    assert not marks(structure_of(drawn(bricks(3, 3), 7.0, 5)))
+    assert not marks(structure_of(rounded(bricks(3, 3), 7.0, 5)))
 
 
 def marks(problem: Problem) -> dict[str, str]:
@@ -165,7 +128,7 @@ def test_the_answer_names_what_closing_can_do(method: str):
     """A brick on the edge of a bed: its weight is 2 mm beyond the edge, or within it."""
     bed = [(-1.0, -0.2), (0.1231, -0.2), (0.1231, 0.0), (-1.0, 0.0)]
     brick = [(0.0, 0.003), (0.25, 0.003), (0.25, 0.128), (0.0, 0.128)]
-    problem = structure_of(drawn([bed, brick], 0.0, 15, tolerance=0.005))
+    problem = structure_of(rounded([bed, brick], 0.0, 15, tolerance=0.005))
     found = check(problem, method=method)
     assert found.verdict is Verdict.COLLAPSES
     assert "leaves it open: stands with blocks grown" in found.reason
@@ -174,10 +137,10 @@ def test_the_answer_names_what_closing_can_do(method: str):
 
 def test_tolerances_are_those_of_the_blocks_at_the_joint():
     """A pebble's gap of a hundredth of it is a gap, however large the pier beside it."""
-    pier: Corners = [(2.0, 0.0), (12.0, 0.0), (12.0, 10.0), (2.0, 10.0)]
-    bed: Corners = [(-1.0, -1.0), (13.0, -1.0), (13.0, 0.0), (-1.0, 0.0)]
+    pier: Polygon = [(2.0, 0.0), (12.0, 0.0), (12.0, 10.0), (2.0, 10.0)]
+    bed: Polygon = [(-1.0, -1.0), (13.0, -1.0), (13.0, 0.0), (-1.0, 0.0)]
     size, gap = 1e-3, 1 / 3e6
-    pebble: Corners = [(0.0, gap), (size, gap), (size, gap + size), (0.0, gap + size)]
+    pebble: Polygon = [(0.0, gap), (size, gap), (size, gap + size), (0.0, gap + size)]
     with pytest.raises(InputError, match="block 2 = 'held by nothing'"):
         assembly_of_polygons([bed, pier, pebble], fixed=[0])
     larger = [(x / size, y - gap) for x, y in pebble]
@@ -203,9 +166,11 @@ def test_the_first_overlap_is_enough(monkeypatch: pytest.MonkeyPatch):
 def test_closed_gaps_are_marked_in_dxf(tmp_path: Path):
     """A line and a size for each joint that closes one; it is read as the same structure."""
     drawing = tmp_path / "wall.json"
-    drawing.write_text(json.dumps(drawn(spread(bricks(3, 3), 0.003), 7.0, 15, tolerance=0.005)))
+    drawing.write_text(
+        json.dumps(rounded(spread(bricks(3, 3), 0.003), 7.0, 15, tolerance=0.005))
+    )
     written = tmp_path / "wall.dxf"
-    assert inside("render", str(drawing), "--out", str(written)).returncode == 0
+    ran("render", drawing, "--out", written)
     space = ezdxf.readfile(written).modelspace()
     kinds = Counter(each.dxftype() for each in space.query('*[layer=="gaps"]'))
     assert kinds == {"LINE": 16, "TEXT": 16}
@@ -220,7 +185,7 @@ def test_a_bracket_says_what_closing_can_do(method: str):
     """
     bed = [(-1.0, -0.2), (1.0, -0.2), (1.0, 0.0), (-1.0, 0.0)]
     brick = [(0.0, 0.003), (0.1, 0.003), (0.1, 0.303), (0.0, 0.303)]
-    table = drawn([bed, brick], 0.0, 15, tolerance=0.005, live=[{"body": [1, 0]}])
+    table = rounded([bed, brick], 0.0, 15, tolerance=0.005, live=[{"body": [1, 0]}])
     found = bracket(structure_of(table), over="load", method=method)
     assert found.limit
     arm = 0.05 / found.limit  # of the centre above the joint, which is within the gap

@@ -10,11 +10,11 @@ import ezdxf
 import numpy as np
 import pytest
 import shapely
-from drawn import GROUND, new_dxf, structure, svg_of, written
+from drawn import new_dxf, on_ground, square, structure, svg_of, written
 from hypothesis import given
 from hypothesis import strategies as st
 from own_bridge import thrusts_of_half
-from running import answered, inside
+from running import answered, inside, ran, refused
 
 from blocksim import (
     CircularArch,
@@ -87,10 +87,9 @@ def test_a_pointed_rib_by_lines_and_arcs_thrusts_as_its_half_does(
     """
     voussoirs = pointed(tmp_path / "rippe.dxf", mortar=mortar)
     layers = ("--layer", "blocks=A-Mauerwerk.Rippe", "--layer", "supports=0-Auflager")
-    more = ("--mu", "0.6", "--unit-weight", "22", "--depth", "0.3", "--json")
+    more = ("--mu", "0.6", "--unit-weight", "22", "--depth", "0.3")
     close = ("--tolerance", repr(1.05e-3 * max(mortar, 2 * GAP)))
-    done = inside("check", str(tmp_path / "rippe.dxf"), *layers, *close, *more)
-    told = json.loads(done.stdout)
+    told = answered("check", tmp_path / "rippe.dxf", *layers, *close, *more)
     assert (told["problem"]["blocks"], len(told["joints"])) == (14, 15)
     weights = 22 * 0.3 * voussoirs[:, 0]
     for each in told["reactions"]:
@@ -111,19 +110,16 @@ def test_a_rib_without_a_unit_is_asked_for_one(tmp_path: Path) -> None:
     pointed(tmp_path / "rippe.dxf", unit=0)
     asked = ("check", str(tmp_path / "rippe.dxf"), "--mu", "0.6", "--tolerance", "0.001")
     layers = ("--layer", "blocks=A-Mauerwerk.Rippe", "--layer", "supports=0-Auflager")
-    bare = inside(*asked, *layers)
-    assert bare.returncode == 2
-    assert "unit is missing" in bare.stderr
-    assert "it is 5000 by 4" in bare.stderr
-    assert inside(*asked, *layers, "--unit", "mm").returncode == 0
+    bare = refused(*asked, *layers)
+    assert "unit is missing" in bare
+    assert "it is 5000 by 4" in bare
+    ran(*asked, *layers, "--unit", "mm")
     for wrong, words in (
         (("--layer", "blocks=Ripe"), "layer = 'Ripe': must be one of the drawing's: 0-Auf"),
         (("--layer", "stones=Rippe"), "--layer = 'stones=Rippe': must be blocks=NAME"),
         (("--unit", "ell"), "--unit = 'ell': must be m, mm, cm"),
     ):
-        said = inside(*asked, *wrong)
-        assert said.returncode == 2
-        assert words in said.stderr
+        assert words in refused(*asked, *wrong)
 
 
 @pytest.mark.parametrize("mortar", [0.0, 0.010])
@@ -228,9 +224,7 @@ def test_a_line_drawn_once_between_two_blocks_is_refused_with_its_place(tmp_path
     assert not loops
     assert any(each.at == pytest.approx((2 * math.cos(math.pi / 7), 2 * math.sin(math.pi / 7)))
                for each in wrong)  # fmt: skip
-    document = cast(Any, new_dxf())
-    space = document.modelspace()
-    space.add_lwpolyline(GROUND, close=True, dxfattribs={"layer": "supports"})
+    document, space = on_ground()
     for line in (((0, 0), (1, 0)), ((1, 0), (1, 1)), ((1, 1), (0.1, 1)), ((0, 0.9), (0, 0))):
         space.add_line(*line, dxfattribs={"layer": "blocks"})
     document.saveas(tmp_path / "open.dxf")
@@ -306,33 +300,28 @@ def test_curves_of_svg_have_the_area_they_enclose() -> None:
 
 def test_what_is_refused_is_drawn_where_it_is(tmp_path: Path) -> None:
     """Each refusal has a ring with its number, also where blocks are refused later."""
-    document = cast(Any, new_dxf())
-    space = document.modelspace()
-    space.add_lwpolyline(GROUND, close=True, dxfattribs={"layer": "supports"})
+    document, space = on_ground()
     space.add_circle((3, 2), 0.5, dxfattribs={"layer": "blocks"})
     space.add_line((0, 0), (1, 1), dxfattribs={"layer": "blocks"})
     document.saveas(tmp_path / "wrong.dxf")
     picture, out = tmp_path / "wrong.svg", tmp_path / "wrong.json"
     asked = ("convert", str(tmp_path / "wrong.dxf"), "--mu", "0.6", "--picture", str(picture))
-    said = inside(*asked, "--out", str(out))
+    said = inside(*asked, "--out", out)
     assert said.returncode == 2
     assert "CIRCLE 33 on layer blocks at (3, 2)" in said.stderr
     assert not out.exists()
     text = picture.read_text("utf-8")
     assert text.count('id="refused-') == 3
     # A block that nothing holds is marked.
-    loose = [(0, 2), (1, 2), (1, 3), (0, 3)]
-    document = cast(Any, new_dxf())
-    space = document.modelspace()
-    space.add_lwpolyline(GROUND, close=True, dxfattribs={"layer": "supports"})
-    space.add_lwpolyline(loose, close=True, dxfattribs={"layer": "blocks"})
+    document, space = on_ground()
+    space.add_lwpolyline(square(0, 2), close=True, dxfattribs={"layer": "blocks"})
     document.saveas(tmp_path / "wrong.dxf")
     said = inside(*asked)
     assert "held by nothing" in said.stderr
     assert 'id="marked-' in picture.read_text("utf-8")
     # Of what is no drawing there is no picture, and it is named as without one.
     (tmp_path / "wrong.dxf").write_text("no drawing")
-    said, plain = inside(*asked), inside(*asked[:-2], "--out", str(out))
+    said, plain = inside(*asked), inside(*asked[:-2], "--out", out)
     assert said.stderr == plain.stderr
     assert "wrong.dxf: file" in said.stderr
 
@@ -340,18 +329,14 @@ def test_what_is_refused_is_drawn_where_it_is(tmp_path: Path) -> None:
 def test_depth_is_of_any_structure_in_the_plane(tmp_path: Path) -> None:
     """Twice as deep, twice as heavy; what has a depth of its own is refused."""
     for subject in (("wall",), ("portal",), (str(stack(tmp_path)),)):
-        asked = ("check", *subject, "--mu", "0.6", "--unit-weight", "20", "--json")
-        weights = [
-            json.loads(inside(*asked, "--depth", depth).stdout)["weight_kN"]
-            for depth in ("0.5", "1")
-        ]
+        asked = ("check", *subject, "--mu", "0.6", "--unit-weight", "20")
+        weights = [answered(*asked, "--depth", depth)["weight_kN"] for depth in ("0.5", "1")]
         assert weights[1] == pytest.approx(2 * weights[0], rel=1e-12)
     table = json.loads(stack(tmp_path).read_text())
     table["blocks"][1]["depth"] = 2.0
     (tmp_path / "own.json").write_text(json.dumps(table))
-    refused = inside("check", str(tmp_path / "own.json"), "--depth", "0.5")
-    assert refused.returncode == 2
-    assert "blocks[1].depth = 2.0" in refused.stderr
+    deep = refused("check", tmp_path / "own.json", "--depth", "0.5")
+    assert "blocks[1].depth = 2.0" in deep
 
 
 def stack(folder: Path) -> Path:

@@ -7,15 +7,16 @@ from pathlib import Path
 import av
 import numpy as np
 import pytest
+from images import turning
 from numpy.typing import NDArray
 from PIL import Image
 from recorded import drawn_words, recorded
 from rocking import on_pulse
-from running import inside
+from running import ran
 
 import blocksim
 from blocksim import JointState, Recording
-from blocksim.blocks.acting import push_on_all
+from blocksim.blocks.acting import Move, push_on_all
 from blocksim.view.camera import FARTHEST, zoomed
 from blocksim.view.canvas import colour
 from blocksim.view.drawing import words_of
@@ -139,8 +140,7 @@ def test_frames_show_what_the_recording_says(kind: str, tmp_path: Path) -> None:
     """
     out = tmp_path / "run.npz"
     method = () if "--method" in FILMED[kind] else ("--method", "direct")
-    done = inside("simulate", *FILMED[kind].split(), *method, "--out", str(out))
-    assert done.returncode == 0, done.stderr
+    ran("simulate", *FILMED[kind].split(), *method, "--out", out)
     run = blocksim.load_recording(out)
     film, frames = filmed(run, tmp_path / "film.gif")
     (stage,) = film._stages
@@ -234,8 +234,7 @@ def test_loads_are_drawn_where_they_act_and_go_with_their_blocks(tmp_path: Path)
     for number in (0, len(frames) - 1):
         turn = 0.0 if number == 0 else -0.8
         way = np.zeros(2) if number == 0 else np.array([0.3, 0.2])
-        cos, sin = math.cos(turn), math.sin(turn)
-        place = known.assembly.built[top, :2] + way + np.array([[cos, -sin], [sin, cos]]) @ arm
+        place = known.assembly.built[top, :2] + way + turning(turn) @ arm
         ((x, y),) = seen_at(film, number, np.append(place, 0.0)[None]).tolist()
         assert near(frames[number], LIVE, x - 8, y, 4)
         assert not near(frames[number], LIVE, x + 40, y, 12)
@@ -298,10 +297,7 @@ def test_the_amount_of_a_spread_is_told_in_every_frame() -> None:
     """Two supports, 1 m/s of span between them, half of it each: 30 mm after 30 ms."""
     known = blocksim.load("column", friction=0.7)
     count = len(known.assembly.blocks)
-    moves = tuple(
-        blocksim.blocks.acting.Move(support=0, direction=np.array([way, 0.0]))
-        for way in (-0.5, 0.5)
-    )
+    moves = tuple(Move(support=0, direction=np.array([way, 0.0])) for way in (-0.5, 0.5))
     times = np.linspace(0, 1, 5)
     moved = np.zeros((5, count, 3))
     for block, way in ((count - 2, -0.5), (count - 1, 0.5)):

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn import written
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from running import inside as blocksim
@@ -62,9 +63,8 @@ def seesaw(low: float, high: float) -> dict[str, Any]:
 
 
 def asked(table: dict[str, Any], over: str, tmp_path: Path, *more: str) -> Any:
-    path = tmp_path / "asked.json"
-    path.write_text(json.dumps(table))
-    return blocksim("bracket", str(path), "--over", over, *more)
+    path = written(tmp_path / "asked.json", table)
+    return blocksim("bracket", path, "--over", over, *more)
 
 
 @pytest.mark.parametrize("first", [5.93, 1e-3, 16.69])
@@ -86,10 +86,9 @@ def test_a_dead_load_that_does_not_turn_lets_it_fall_and_stand_again(
 
 
 def test_checks_agree_with_the_ends_of_the_tilt(tmp_path: Path) -> None:
-    path = tmp_path / "cantilever.json"
-    path.write_text(json.dumps(cantilever(math.radians(5.93))))
+    path = written(tmp_path / "cantilever.json", cantilever(math.radians(5.93)))
     codes = [
-        blocksim("check", str(path), "--tilt", str(tilt)).returncode
+        blocksim("check", path, "--tilt", tilt).returncode
         for tilt in (5, 5.92, 5.94, 7, 20, BACK - 5.94, BACK - 5.92, 35)
     ]
     assert codes == [0, 0, 1, 1, 1, 1, 0, 0]
@@ -135,9 +134,8 @@ def test_where_nothing_changes_it_is_told_what_holds(
         corner[0] = centre + x
     # Straight down, through the centre of the block.
     table["live"] = [{"block": "block", "point": [centre, 1], "force": [0, -1]}]
-    path = tmp_path / "a.json"
-    path.write_text(json.dumps(table))
-    told = blocksim("bracket", str(path), "--over", "load").stdout
+    path = written(tmp_path / "a.json", table)
+    told = blocksim("bracket", path, "--over", "load").stdout
     assert told.startswith(said)
 
 

@@ -19,7 +19,7 @@ from pathlib import Path
 from threading import Timer
 
 import pytest
-from running import PROGRAM, children, inside, until
+from running import PROGRAM, children, ran, until
 from sweeps import SIMULATED, Rows, rows_of, written
 from test_sweep_survives import cluster
 
@@ -157,8 +157,7 @@ def given(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ]  # fmt: skip
         table = json.dumps({"friction": 0.7, "blocks": blocks})
         (folder / "many" / f"{number}.json").write_text(table)
-    done = inside(*(str(folder / "run.npz") if each == "OUT" else each for each in MOVES))
-    assert done.returncode == 0, done.stderr
+    ran(*(str(folder / "run.npz") if each == "OUT" else each for each in MOVES))
     return folder
 
 

@@ -1,15 +1,15 @@
 """Least thickness, and other values at which a kind of structure begins to stand."""
 
-import json
 import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from drawn import written
 from kind_cases import CATENARY, KINDS, LEAST, PIERS
 from own_bridge import Bridge
-from running import inside
+from running import answered, inside, ran
 from scipy.integrate import quad
 from scipy.optimize import linprog
 from structure_cases import case
@@ -106,17 +106,15 @@ def test_what_slips_may_come_to_rest_again() -> None:
 
 def test_a_kind_by_its_name() -> None:
     """The same as the file that says so; parameters of a file can be changed."""
-    done = inside(
-        "bracket", "pointed-arch", "--mu", "inf", "--with", "voussoirs=60",
-        "--with", "radius=1.25", "--json",
-    )  # fmt: skip
+    sizes = ("--with", "voussoirs=60", "--with", "radius=1.25")
+    found = answered("bracket", "pointed-arch", "--mu", "inf", *sizes)
     want = case("pointed_e0_25")["expected"]["value"]
-    assert json.loads(done.stdout)["limit"] == pytest.approx(want, rel=1e-7)
+    assert found["limit"] == pytest.approx(want, rel=1e-7)
     thin = ("portal", "--mu", "0.7", "--with", "pier_width=1", "--with", "arch.thickness=0.1")
-    assert inside("check", *thin).returncode == 1
-    assert inside("check", *thin[:-1], "arch.thickness=0.12").returncode == 0
-    pushed = ("column", "--mu", "0.9", "--with", 'live=[{"body": [1, 0]}]', "--json")
-    factor = json.loads(inside("check", *pushed).stdout)["load_factor"]
+    ran("check", *thin, code=1)
+    ran("check", *thin[:-1], "arch.thickness=0.12")
+    pushed = ("column", "--mu", "0.9", "--with", 'live=[{"body": [1, 0]}]')
+    factor = answered("check", *pushed)["load_factor"]
     assert factor == pytest.approx(1 / 3.6, rel=1e-9)
 
 
@@ -218,12 +216,9 @@ def own_factor(place: float, weight: float) -> float:
 
 @pytest.mark.parametrize("place", [-3.1, -4.3])
 def test_two_unequal_spans_on_a_pier(tmp_path: Path, place: float) -> None:
-    path = tmp_path / "viaduct.toml"
-    path.write_text(VIADUCT)
+    path = written(tmp_path / "viaduct.toml", VIADUCT)
     wheel = ("--point-load", str(place), "50")
-    done = inside("bracket", str(path), *wheel, "--over", "load", "--json")
-    assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)["limit"]
+    found = answered("bracket", path, *wheel, "--over", "load")["limit"]
     assert found == pytest.approx(own_factor(place, 50.0), rel=1e-6)
 
 

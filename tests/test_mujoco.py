@@ -8,12 +8,11 @@ from typing import cast
 
 import numpy as np
 import pytest
-from arches import arch_at, problem_at
+from arches import problem_at
 from worlds import Simulation, get_engine, hold, least_motion, observe
 
 from analysis.structure_cases import answered, questions
 from blocksim import (
-    CircularArch,
     InputError,
     MissingPart,
     Problem,
@@ -71,8 +70,8 @@ def test_where_friction_allows_both_it_keeps_the_forces_it_is_given() -> None:
 
     Where both are possible the last bit of the thickness decides what MuJoCo finds.
     """
-    arches = [arch_at(ratio, 155, 4.0, 9) for ratio in (1.01, 1.02, 1.03, 1.05, 1.1)]
-    seen = [hold(CircularArch.of(arch, 4.0).problem(), "mujoco").onset for arch in arches]
+    ratios = (1.01, 1.02, 1.03, 1.05, 1.1)
+    seen = [hold(problem_at(each, 155, 4.0, 9), "mujoco").onset for each in ratios]
     assert {each.verdict for each in seen} == {Verdict.STANDS}
     assert any(each.may_slide for each in seen)
 

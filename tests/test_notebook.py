@@ -14,6 +14,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+from drawn import written
 from running import answered
 
 import blocksim
@@ -155,8 +156,7 @@ def test_drawings_of_arches_tell_their_mode(formatted: Formatted) -> None:
 
 
 def test_to_dict_is_what_the_command_line_prints(shown: dict[str, Any], tmp_path: Path) -> None:
-    path = tmp_path / "stack.json"
-    path.write_text(json.dumps({**TABLE, "title": shown["problem"].title}))
+    path = written(tmp_path / "stack.json", {**TABLE, "title": shown["problem"].title})
     arch = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "27")
     asked = {
         "arch check": ("check", *arch, "--eta", "0.1"),

@@ -4,8 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from drawn import GROUND, square, wall
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from images import turning
 from structure_cases import first, names, of_each_kind, scenes
 from worlds import classify, joint_motion, observed_mode, overlap_and_slip
 
@@ -18,14 +20,6 @@ from blocksim import (
     assembly_of_polygons,
     structure_of,
 )
-
-GROUND = [(-1, -1), (9, -1), (9, 0), (-1, 0)]
-
-
-def box(
-    x: float, y: float, width: float = 1.0, height: float = 1.0
-) -> list[tuple[float, float]]:
-    return [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
 
 
 def built(*bodies: list[list[tuple[float, float]]]) -> Problem:
@@ -40,40 +34,35 @@ def pairs(assembly: Assembly) -> list[tuple[int, int]]:
     return [(joint.before, joint.after) for joint in assembly.joints]
 
 
-def wall(courses: int, bricks: int) -> list[list[tuple[float, float]]]:
-    """Running bond: odd courses half a brick to the right."""
-    ground = [(-1, -1), (2 * bricks + 2, -1), (2 * bricks + 2, 0), (-1, 0)]
-    rows = [box(2 * k + row % 2, row, 2, 1) for row in range(courses) for k in range(bricks)]
-    return [ground, *rows]
-
-
 @pytest.mark.parametrize(("courses", "bricks"), [(1, 1), (2, 3), (5, 4)])
 def test_running_bond_has_the_joints_one_counts(courses: int, bricks: int):
-    assembly = assembly_of_polygons(wall(courses, bricks), fixed=[0])
+    assembly = assembly_of_polygons([GROUND, *wall(courses, bricks)], fixed=[0])
     heads = courses * (bricks - 1)
     beds = (courses - 1) * (2 * bricks - 1)
     assert len(assembly.joints) == bricks + heads + beds
     lengths = sorted(joint.length for joint in assembly.joints)
-    assert lengths == [1.0] * (heads + beds) + [2.0] * bricks
+    assert lengths == pytest.approx([0.3] * heads + [0.6] * beds + [1.2] * bricks)
     assert not any(joint.is_corner for joint in assembly.joints)
 
 
 def test_the_sense_and_the_faces_of_a_joint():
     """On its support a brick's bed: upwards, inner to the right, on the whole top face."""
-    assembly = assembly_of_polygons([box(0, 0, 2), GROUND, box(0.5, 1, 3)], fixed=[1])
+    assembly = assembly_of_polygons([square(0, 0, 2), GROUND, square(0.5, 1, 3)], fixed=[1])
     bed, upper = assembly.joints
     assert (bed.before, bed.after, bed.support) == (-1, 0, 0)
     assert (upper.before, upper.after, upper.support) == (0, 1, None)
     assert bed.normal.tolist() == upper.normal.tolist() == [0, 1]
     assert (bed.inner.tolist(), bed.outer.tolist()) == ([2, 0], [0, 0])
-    assert bed.faces.tolist() == [[[9, 0], [-1, 0]], [[2, 0], [0, 0]]]
+    assert bed.faces.tolist() == [[[7, 0], [-1, 0]], [[2, 0], [0, 0]]]
     assert (upper.inner.tolist(), upper.outer.tolist()) == ([2, 1], [0.5, 1])
     assert upper.faces.tolist() == [[[2, 1], [0, 1]], [[3.5, 1], [0.5, 1]]]
 
 
 def test_a_face_meets_several_blocks_and_two_blocks_meet_twice():
     """A beam on two posts, and a bridge-like block that stands on one base with two feet."""
-    assembly = assembly_of_polygons([GROUND, box(0, 0), box(3, 0), box(0, 1, 4)], fixed=[0])
+    assembly = assembly_of_polygons(
+        [GROUND, square(0, 0), square(3, 0), square(0, 1, 4)], fixed=[0]
+    )
     assert pairs(assembly) == [(-1, 0), (-1, 1), (0, 2), (1, 2)]
     feet = [(0, 0), (1, 0), (1, 1), (3, 1), (3, 0), (4, 0), (4, 2), (0, 2)]
     twice = assembly_of_polygons([GROUND, feet], fixed=[0])
@@ -91,7 +80,7 @@ def test_a_corner_on_a_face():
     assert (joint.before, joint.after, joint.length) == (-1, 0, 0)
     # The corner is the support's: the normal still points from before into after.
     (turned,) = assembly_of_polygons(
-        [[(1, 0), (0, -1), (2, -1)], box(0, 0, 2)], fixed=[0]
+        [[(1, 0), (0, -1), (2, -1)], square(0, 0, 2)], fixed=[0]
     ).joints
     assert turned.is_corner
     assert turned.normal.tolist() == [0, 1]
@@ -99,7 +88,7 @@ def test_a_corner_on_a_face():
 
 def test_corner_on_corner_is_no_joint():
     """Four bricks in a stack bond meet in one point: no joints across it."""
-    four = [GROUND, box(0, 0), box(1, 0), box(0, 1), box(1, 1)]
+    four = [GROUND, square(0, 0), square(1, 0), square(0, 1), square(1, 1)]
     assembly = assembly_of_polygons(four, fixed=[0])
     assert pairs(assembly) == [(-1, 0), (-1, 1), (0, 1), (0, 2), (1, 3), (2, 3)]
 
@@ -124,13 +113,13 @@ def test_polygons_that_are_not_convex_move_as_one():
     assert whole.mass == pytest.approx(3 / 9.81, rel=1e-14)
     # Each square 1/6 about itself; distances squared 2/9, 5/9 and 5/9 of the centroids.
     assert whole.inertia * 9.81 == pytest.approx(3 / 6 + 2 / 9 + 10 / 9, rel=1e-13)
-    parted = built([GROUND], [box(0, 0, 2), box(0, 1)]).assembly
+    parted = built([GROUND], [square(0, 0, 2), square(0, 1)]).assembly
     assert parted.blocks[0].inertia == pytest.approx(whole.inertia, rel=1e-13)
     assert len(parted.blocks[0].vertices) == len(whole.vertices) == 5
 
 
 def test_a_face_put_together_from_parts_is_one_face():
-    assembly = built([GROUND], [box(0, 0), box(1, 0)], [box(0.5, 1)]).assembly
+    assembly = built([GROUND], [square(0, 0), square(1, 0)], [square(0.5, 1)]).assembly
     bed, upper = assembly.joints
     assert bed.length == 2
     assert upper.length == 1
@@ -159,7 +148,7 @@ def test_a_centre_of_weight_leaves_the_inertia():
     ground = {"id": 0, "vertices": GROUND, "fixed": True}
     plain, moved = (
         structure_of(
-            {"friction": 1.0, "blocks": [ground, {"id": 1, "vertices": box(0, 0), **more}]}
+            {"friction": 1.0, "blocks": [ground, {"id": 1, "vertices": square(0, 0), **more}]}
         ).assembly
         for more in ({}, {"centre": [0.3, 0.6]})
     )
@@ -171,13 +160,13 @@ def test_a_centre_of_weight_leaves_the_inertia():
 @pytest.mark.parametrize(
     ("bodies", "fixed", "said"),
     [
-        ([GROUND, box(0, 0), box(0.97, 0)], [0], "overlap of blocks 1 and 2"),
-        ([GROUND, box(0, -0.03)], [0], "overlap of blocks 0 and 1"),
-        ([GROUND, box(0, 0), box(5, 3)], [0], "block 2 = 'held by nothing'"),
-        ([GROUND, box(0, 0.03)], [0], "block 1 = 'held by nothing'"),
+        ([GROUND, square(0, 0), square(0.97, 0)], [0], "overlap of blocks 1 and 2"),
+        ([GROUND, square(0, -0.03)], [0], "overlap of blocks 0 and 1"),
+        ([GROUND, square(0, 0), square(5, 3)], [0], "block 2 = 'held by nothing'"),
+        ([GROUND, square(0, 0.03)], [0], "block 1 = 'held by nothing'"),
         ([GROUND, [(0, 0), (1, 0), (math.nan, 1)]], [0], "finite"),
-        ([GROUND, box(0, 0)], [], "fixed"),
-        ([GROUND, box(0, 0)], [0, 1], "not fixed"),
+        ([GROUND, square(0, 0)], [], "fixed"),
+        ([GROUND, square(0, 0)], [0, 1], "not fixed"),
     ],
 )
 def test_refused_in_one_line(
@@ -190,12 +179,12 @@ def test_refused_in_one_line(
 
 
 def test_a_gap_that_is_nearly_a_joint_is_said_and_not_guessed():
-    bodies = [GROUND, box(0, 0), box(1 + 2e-5, 0)]
+    bodies = [GROUND, square(0, 0), square(1 + 2e-5, 0)]
     notes = built(*([body] for body in bodies)).notes
     assert any("nearly touching" in note and "n1 and n2" in note for note in notes)
     assembly = assembly_of_polygons(bodies, fixed=[0])
     assert pairs(assembly) == [(-1, 0), (-1, 1)]
-    closed = assembly_of_polygons([GROUND, box(0, 0), box(1 + 4e-7, 0)], fixed=[0])
+    closed = assembly_of_polygons([GROUND, square(0, 0), square(1 + 4e-7, 0)], fixed=[0])
     assert pairs(closed) == [(-1, 0), (-1, 1), (0, 1)]
 
 
@@ -237,7 +226,7 @@ def test_found_joints_do_not_depend_on_how_it_is_drawn(
     polygons = [np.array(block["vertices"]) for block in blocks]
     fixed = [at for at, block in enumerate(blocks) if block.get("fixed")]
     first = assembly_of_polygons(list(polygons), fixed=fixed)
-    turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+    turn = turning(-angle)
     if mirrored:
         turn = np.diag([-1.0, 1.0]) @ turn
     scale = 10**power
@@ -309,11 +298,8 @@ STATE = JointState
 def turned(poses: np.ndarray, blocks: list[int], about: np.ndarray, angle: float) -> np.ndarray:
     """Turn blocks together about a point, lengths in units of r."""
     moved = poses.copy()
-    cosine, sine = math.cos(angle), math.sin(angle)
-    spin = np.array([[cosine, -sine], [sine, cosine]])
-    for block in blocks:
-        moved[block, :2] = about + spin @ (poses[block, :2] - about)
-        moved[block, 2] += angle
+    moved[blocks, :2] = about + (poses[blocks, :2] - about) @ turning(angle).T
+    moved[blocks, 2] += angle
     return moved
 
 

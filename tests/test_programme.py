@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 from arches import arch_at
-from drawn import box
+from drawn import box, bricks, rounded
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from structure_cases import case, names, of_each_kind, scenes
-from test_drawn_joints import bricks, drawn
 from worlds import least_motion
 
 from blocksim import CircularArch, Problem, check, collapse, equilibrium, structure_of
@@ -23,10 +22,6 @@ frictions = st.one_of(st.floats(0.05, 2.0), st.just(math.inf))
 lengths = st.floats(0.2, 5.0)
 FLOOR = {"id": "floor", "vertices": [[-99, -1], [99, -1], [99, 0], [-99, 0]], "fixed": True}
 SIDEWAYS = [{"body": [1, 0]}]
-
-
-def friction(mu: float) -> float | str:
-    return "inf" if mu == math.inf else mu
 
 
 def asked(question: str) -> list[str]:
@@ -50,7 +45,7 @@ def with_friction_everywhere(problem: Problem, mu: float) -> Problem:
 def test_a_block_slides_or_tips(slope: float, mu: float, width: float, height: float) -> None:
     """Down a slope it takes min(mu, width / height) cos - sin; a flat one: the tangent."""
     angle = math.radians(slope)
-    table = {"friction": friction(mu), "blocks": [FLOOR, box("1", 0, 0, width, height)]}
+    table = {"friction": mu, "blocks": [FLOOR, box("1", 0, 0, width, height)]}
     problem = structure_of(table | {"live": SIDEWAYS}).tilted(angle)
     least = min(mu, width / height)
     want = least * math.cos(angle) - math.sin(angle)
@@ -66,7 +61,7 @@ def test_a_push_at_a_height(
     """W mu to slide, W width / (2 y) to tip: newtons, wherever the drawing's units lie."""
     push = {"block": "1", "point": [0, share * height], "force": [1, 0]}
     block = box("1", 0, 0, width, height) | {"weight": weight}
-    table = {"friction": friction(mu), "blocks": [FLOOR, block], "live": [push]}
+    table = {"friction": mu, "blocks": [FLOOR, block], "live": [push]}
     arm = share * height
     want = weight * min(mu, width / (2 * arm) if arm > 1e-9 else math.inf)
     assume(arm == 0 or arm > 1e-3)
@@ -94,7 +89,7 @@ def test_a_stack_falls_at_its_weakest_joint(
         below = str(number - 1) if number else "floor"
         ends = [[joint[0], low], [joint[1], low]]
         blocks.append(box(str(number), left, low, right, low + height))
-        joints.append({"a": below, "b": str(number), "ends": ends, "friction": friction(mu)})
+        joints.append({"a": below, "b": str(number), "ends": ends, "friction": mu})
         bed, low = (left, right), low + height
     table = {"friction": 0.0, "blocks": blocks, "joints": joints, "live": SIDEWAYS}
     problem = structure_of(table)
@@ -155,7 +150,7 @@ def test_a_three_hinged_arch(
         foot = {"a": "floor", "b": name, "ends": [[side * span, 0]], "normal": [0, 1]}
         joints.append(foot | {"friction": "inf"})
     joints.append({"a": "left", "b": "right", "ends": [[0, rise]], "normal": [1, 0]})
-    table = {"friction": friction(mu), "blocks": blocks, "joints": joints, "live": SIDEWAYS}
+    table = {"friction": mu, "blocks": blocks, "joints": joints, "live": SIDEWAYS}
     thrust = (span - x) / rise
     want = min(span / y, mu * thrust * span / y)
     assert factor(table) == pytest.approx(want, rel=1e-9)
@@ -321,7 +316,7 @@ def test_large_structures_are_answered_as_small_ones_are(
     degrees: float, mu: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of a wall of 145 bricks, by the interior point and by the simplex; both are proved."""
-    wall = structure_of(drawn(bricks(10, 15), degrees, 15, mu=mu))
+    wall = structure_of(rounded(bricks(10, 15), degrees, 15, mu=mu))
     assert Cones(wall).count > linear.MANY * (mu > 0)
     found = equilibrium(wall)
     monkeypatch.setattr(programme, "MANY", math.inf)
@@ -335,7 +330,7 @@ def test_large_structures_are_answered_as_small_ones_are(
 @pytest.mark.parametrize("degrees", [0, 40])
 def test_a_wall_of_ten_thousand_bricks_is_proved(degrees: float) -> None:
     """It slides where its bed is steeper than friction."""
-    found = check(structure_of(drawn(bricks(80, 130), degrees, 15)), method="limit")
+    found = check(structure_of(rounded(bricks(80, 130), degrees, 15)), method="limit")
     assert (found.verdict.value, found.proved) == ("collapses" if degrees else "stands", True)
 
 

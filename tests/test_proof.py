@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from drawn import box
+from drawn import box, bricks, rounded
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from running import PROGRAM, inside
+from running import PROGRAM, answered, ran, refused
 from space_cases import NAMES as IN_SPACE
 from space_cases import asked as known_in_space
 
@@ -140,29 +140,11 @@ def test_a_column_of_unlike_drums_tips_where_it_must(
     assert found == (Verdict.COLLAPSES if aside > 0 else Verdict.STANDS)
 
 
-def wall(courses: int, count: int, degrees: float, decimals: int, friction: float) -> Table:
-    """Bricks of 1 by 0.5 m in bond on a bed, turned, and rounded."""
-    cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-
-    def turned(table: Table) -> Table:
-        corners = [[round(cos * x - sin * y, decimals), round(sin * x + cos * y, decimals)]
-                   for x, y in table["vertices"]]  # fmt: skip
-        return table | {"vertices": corners}
-
-    blocks = [turned(box("bed", -1, -1, count + 2, 0)) | {"fixed": True}]
-    for course in range(courses):
-        aside = 0.5 * (course % 2)
-        for at in range(count - course % 2):
-            left, low = aside + at, 0.5 * course
-            blocks.append(turned(box(f"{course}-{at}", left, low, left + 1, low + 0.5)))
-    return {"friction": friction, "blocks": blocks}
-
-
 @pytest.mark.parametrize("decimals", [8, 9, 10])
 @pytest.mark.parametrize("courses", [4, 5, 6])
 def test_walls_of_rounded_corners_are_answered(courses: int, decimals: int) -> None:
     """All that is told of them, too. As for any rounding the friction has to be tan 10 deg."""
-    found = check(structure_of(wall(courses, 6, 10, decimals, 0.7)), method="limit")
+    found = check(structure_of(rounded(bricks(courses, 6), 10, decimals, 0.7)), method="limit")
     assert found.verdict is Verdict.STANDS
     carried = found.carried
     # Half a brick overhangs at the ends of each other course: the least strength is of tipping.
@@ -199,7 +181,7 @@ def proofs() -> Iterator[Table]:
                 ).problem()
             )
     for tilt in (0, 50):
-        yield proof_of(structure_of(wall(2, 2, 10, 8, 0.6)).tilted(math.radians(tilt)))
+        yield proof_of(structure_of(rounded(bricks(2, 2), 10, 8)).tilted(math.radians(tilt)))
     for friction in (0.2, 0.6):
         yield proof_of(structure_of(on_a_ramp(1e-3, 0.5, friction)))
     for index in range(20, 30):
@@ -349,10 +331,8 @@ def test_a_proof_in_space_by_command(tmp_path: Path) -> None:
     """Both sides of the tilt at which a tower falls."""
     proof = tmp_path / "proof.json"
     asked = ("bracket", "tower", "--mu", "0.7", "--over", "tilt", "--proof", str(proof))
-    done = inside(*asked, "--json")
-    assert json.loads(done.stdout)["proved"] is True
-    found = inside("verify", str(proof)).stdout.splitlines()
-    assert found == [
+    assert answered(*asked)["proved"] is True
+    assert ran("verify", proof).splitlines() == [
         f"proved: {each}, 6 blocks and 6 joints" for each in ("collapses", "stands")
     ]
     assert structure_of(json.loads(proof.read_text())[0]["problem"]).in_space
@@ -362,19 +342,15 @@ def test_the_commands(tmp_path: Path) -> None:
     """A proof is written, checked by the command and by the file alone, refused if spoilt."""
     file, proof = tmp_path / "pebble.json", tmp_path / "proof.json"
     file.write_text(json.dumps(on_a_ramp(1e-3, 0.5, 0.6)))
-    done = inside("check", str(file), "--proof", str(proof), "--json")
-    assert json.loads(done.stdout)["proved"] is True
+    assert answered("check", file, "--proof", proof)["proved"] is True
     alone = [sys.executable, "-I", verify_module.__file__, str(proof)]
     for command in ([*PROGRAM, "verify", str(proof)], alone):
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         assert done.stdout == "proved: stands, 2 blocks and 2 joints\n", done.stderr
     proof.write_text(proof.read_text().replace("pebble", "people"))
-    done = inside("verify", str(proof))
-    assert done.returncode == 2
-    assert "the file was changed" in done.stderr
-    refused = inside("check", str(file), "--method", "direct", "--proof", str(proof))
-    assert refused.returncode == 2
-    assert "limit proves" in refused.stderr
+    assert "the file was changed" in refused("verify", proof)
+    direct = refused("check", file, "--method", "direct", "--proof", proof)
+    assert "limit proves" in direct
 
 
 @pytest.mark.parametrize(
@@ -391,17 +367,16 @@ def test_both_sides_of_a_change_are_proved(
     file, proof = tmp_path / "pebble.json", tmp_path / "proof.json"
     table = on_a_ramp(1e-3, 0.5, 0.6)
     file.write_text(json.dumps(table | {"live": loads}))
-    asked = ("bracket", str(file), "--over", over, "--proof", str(proof), "--json")
-    assert json.loads(inside(*asked).stdout)["proved"] is True
-    done = inside("verify", str(proof))
-    claims = [line.split(",")[0] for line in done.stdout.splitlines()]
-    assert claims == ["proved: collapses", "proved: stands"], done.stderr
+    asked = ("bracket", str(file), "--over", over, "--proof", str(proof))
+    assert answered(*asked)["proved"] is True
+    claims = [line.split(",")[0] for line in ran("verify", proof).splitlines()]
+    assert claims == ["proved: collapses", "proved: stands"]
     falls, stands = json.loads(proof.read_text())
     spoilt_one = {**stands, "problem": falls["problem"]}
     proof.write_text(json.dumps([falls, {**spoilt_one, "sha256": seal(spoilt_one)}]))
-    assert inside("verify", str(proof)).returncode == 2
+    refused("verify", proof)
     proof.write_text("[]")
-    assert inside("verify", str(proof)).returncode == 2
+    refused("verify", proof)
 
 
 @pytest.mark.parametrize("voussoirs", [7, 27])

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from arches import ARCHES as OF_ENGINES
 from arches import arch_at, held_in, problem_at
+from images import moved
 from scipy.spatial.transform import Rotation
 from structure_cases import case, scenes
 from worlds import Engine, hold, observe
@@ -34,21 +35,6 @@ from blocksim.engines.pybullet import ENGINE, Bodies
 ARCHES = OF_ENGINES["pybullet"]
 SIDES = [(0.99, Verdict.COLLAPSES), (1.01, Verdict.STANDS)]
 THIN = Arch(half_angle=math.pi / 2, eta=0.08, voussoirs=9)
-
-
-def moved(assembly: Assembly, by: list[float]) -> Assembly:
-    """Return the same blocks elsewhere [m]."""
-    blocks, joints = assembly.blocks, assembly.joints
-    return replace(
-        assembly,
-        blocks=tuple(
-            replace(each, vertices=each.vertices + by, centre=each.centre + by)
-            for each in blocks
-        ),
-        joints=tuple(
-            replace(each, inner=each.inner + by, outer=each.outer + by) for each in joints
-        ),
-    )
 
 
 def held(assembly: Assembly, mu: float, engine: Engine = ENGINE) -> tuple[Verdict, np.ndarray]:

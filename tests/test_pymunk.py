@@ -58,14 +58,14 @@ def test_purely_sliding_at_any_thickness(eta: float) -> None:
 @pytest.mark.parametrize(("ratio", "right"), [(0.999, "collapses"), (1.001, "stands")])
 def test_forces_to_begin_with_decide_thin_arches(ratio: float, right: str) -> None:
     """All voussoirs; from nothing it took 17 million sweeps, two minutes."""
-    arch = arch_at(ratio, 20, 0.7, 27)
-    seen = observe(CircularArch.of(arch, 0.7).problem(), "pymunk")
+    problem = problem_at(ratio, 20, 0.7, 27)
+    seen = observe(problem, "pymunk")
     assert seen.verdict.value == right
     assert seen.motion.verdict.value == right
     assert seen.onset.sweeps < 300_000
     assert "begun with forces of limit analysis" in seen.reason
     if right == "collapses":
-        assert observed_mode(seen.joints, arch) is Mode.RRR
+        assert observed_mode(seen.joints, problem.maker.shape) is Mode.RRR
 
 
 @pytest.mark.parametrize(("angle", "mu", "count"), [(30, 0.7, 27), (125, 0.9, 20)])
@@ -85,9 +85,7 @@ def test_no_forces_to_begin_with_make_a_verdict(
 
 
 HASH = """
-from blocksim.arch.circular import Arch
-from blocksim.ask.simulate import simulate
-from blocksim.kinds.circular import CircularArch
+from blocksim import Arch, CircularArch, simulate
 arch = Arch(half_angle=1.5707963267948966, eta=0.1, voussoirs=13)
 print(simulate(CircularArch.of(arch, friction=0.6), method="pymunk", duration=1.0).state_hash)
 """

@@ -4,13 +4,12 @@ Each row of `refused.json` is a command, the files it finds, and what its line h
 """
 
 import json
-import re
 import shlex
 from pathlib import Path
 from typing import Any
 
 import pytest
-from running import inside
+from running import refused
 
 REFUSED = json.loads(Path(__file__).with_name("refused.json").read_text(encoding="utf-8"))
 
@@ -20,8 +19,7 @@ def test_what_cannot_be_is_told_in_one_line(row: dict[str, Any], tmp_path: Path)
     for name, text in row.get("files", {}).items():
         written = text if isinstance(text, str) else json.dumps(text)
         (tmp_path / name).write_text(written, encoding="utf-8", errors="surrogateescape")
-    done = inside(*shlex.split(row["asked"]), cwd=tmp_path)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert re.fullmatch(r"blocksim: [^\n]{1,700}\n", done.stderr)
-    assert row["said"] in done.stderr
+    said = refused(*shlex.split(row["asked"]), cwd=tmp_path)
+    assert row["said"] in said
+    assert len(said) <= len("blocksim: ") + 700 + 1
     assert {path.name for path in tmp_path.iterdir()} == set(row.get("files", {}))

@@ -43,19 +43,21 @@ def page(windows: Windows, address: str):
     return windows.open(address, 1280, 900, reduced_motion="no-preference")
 
 
-def test_the_slider_moves_the_blocks(page, windows: Windows) -> None:
-    figure = page.locator(".motion").first
-    piece = figure.locator(".piece").nth(5)
+@pytest.mark.parametrize("case", ["#case-1", "#case-4"])
+def test_the_slider_moves_the_blocks(page, windows: Windows, case: str) -> None:
+    """Of an arch, and of a structure."""
+    figure = page.locator(f"{case} .motion").first
+    piece, slider = figure.locator(".piece").nth(5), figure.locator("input")
     moved = piece.get_attribute("transform")
-    slider = figure.locator("input")
     slider.focus()
     slider.press("Home")
     assert piece.get_attribute("transform").startswith("translate(0 0) rotate(0 ")
     slider.press("End")
     assert piece.get_attribute("transform") == moved
-    # Half of the way is half of the motion, which is straight down here.
-    slider.fill("0.5")
-    assert piece.get_attribute("transform").startswith("translate(0 6.5) rotate(0 ")
+    if case == "#case-1":
+        # Half of the way is half of the motion, which is straight down here.
+        slider.fill("0.5")
+        assert piece.get_attribute("transform").startswith("translate(0 6.5) rotate(0 ")
     assert windows.wrong("file:") == []
 
 
@@ -99,15 +101,9 @@ def test_it_fits_the_window(page) -> None:
         assert min(page.evaluate(heights)) >= 24
 
 
-def test_a_structure_moves_and_can_be_seen(page, windows: Windows) -> None:
+def test_a_structure_can_be_seen(page, windows: Windows) -> None:
     figure = page.locator("#case-4 .motion")
-    piece = figure.locator(".piece").nth(5)
-    moved = piece.get_attribute("transform")
-    slider = figure.locator("input")
-    slider.fill("0")
-    assert piece.get_attribute("transform").startswith("translate(0 0) rotate(0 ")
-    slider.fill("1")
-    assert piece.get_attribute("transform") == moved
+    figure.locator("input").fill("1")
     # Stone, support and the arrow of the load all stand out from the card.
     look = "getComputedStyle(document.querySelector('article')).backgroundColor"
     for scheme in ("light", "dark"):

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from arches import ENGINEERS
 from arches import least as least_of
-from running import inside
+from running import ran
 from windows import Windows
 
 from blocksim import CircularArch, check
@@ -43,8 +43,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("wall", ("wall", "--mu", "0.6"), 0),
         ("road", (*ASKED, *FRICTION, "--fill", "0.5", "--point-load", "1", "20"), 0),
     ):
-        found = inside("report", *asked, "--out", str(folder / f"{name}.html"))
-        assert found.returncode == code, found.stderr
+        ran("report", *asked, "--out", folder / f"{name}.html", code=code)
     return folder
 
 
@@ -172,7 +171,7 @@ def test_names_are_escaped_and_nothing_is_loaded(pages: Path) -> None:
 
 def test_a_thickness_that_is_a_share_of_the_least_is_told(tmp_path: Path) -> None:
     out = tmp_path / "semicircle.html"
-    assert inside("report", "semicircle", "--out", str(out)).returncode == 1
+    ran("report", "semicircle", "--out", out, code=1)
     text = out.read_text(encoding="utf-8")
     assert "0.99" in text
     assert "thickness over the least one that stands, as built" in text
@@ -202,7 +201,7 @@ def test_what_is_given_and_what_has_moved_is_told(tmp_path: Path) -> None:
     said: dict[str, dict[str, str]] = {}
     for name, asked in asks.items():
         page = tmp_path / f"{name}.html"
-        assert inside("report", *asked, "--out", str(page)).returncode == 0
+        ran("report", *asked, "--out", page)
         said[name] = rows_of(page)
     spans = said["spans"]
     told = [spans[f"each_span 2: {each}"].split(" | ")[0] for each in ("span", "voussoirs")]
@@ -269,22 +268,16 @@ def test_it_moves_and_can_be_seen_on_a_screen(
     assert piece.get_attribute("transform").startswith("translate(0 0) rotate(0 ")
     slider.fill("1")
     assert not piece.get_attribute("transform").startswith("translate(0 0)")
-    colours = page.evaluate("""() => ["body", "svg.sheet"].map((each) =>
-      getComputedStyle(document.querySelector(each)).backgroundColor)""")
-    for each in colours:
-        light = sum(int(part) for part in re.findall(r"\d+", each)[:3]) / 765
-        assert (light > 0.5) is (scheme == "light")
-    inks = page.evaluate("""() => [...document.querySelectorAll("svg.sheet [id^=text] use")]
-      .map((each) => getComputedStyle(each).fill)""")
-    assert len(inks) > 20
-    for each in inks:
-        light = sum(int(part) for part in re.findall(r"\d+", each)[:3]) / 765
-        assert (light < 0.5) is (scheme == "light")
-    hatched = page.evaluate("""() =>
-      [...document.querySelectorAll("svg.sheet pattern rect")].map((each) =>
-      getComputedStyle(each).fill)""")
-    assert hatched
-    for each in hatched:
-        light = sum(int(part) for part in re.findall(r"\d+", each)[:3]) / 765
-        assert (light > 0.5) is (scheme == "light")
+    tones = """([shapes, kind]) => [...document.querySelectorAll(shapes)].map((each) =>
+      getComputedStyle(each)[kind])"""
+    for shapes, kind, least, is_ground in (
+        ("body, svg.sheet", "backgroundColor", 2, True),
+        ("svg.sheet [id^=text] use", "fill", 21, False),
+        ("svg.sheet pattern rect", "fill", 1, True),
+    ):
+        found = page.evaluate(tones, [shapes, kind])
+        assert len(found) >= least
+        for each in found:
+            light = sum(int(part) for part in re.findall(r"\d+", each)[:3]) / 765
+            assert (light > 0.5) is ((scheme == "light") == is_ground)
     assert windows.wrong("file:") == []

@@ -1,6 +1,5 @@
 """Fill and loads on the road: weights by hand, statics, and what is refused."""
 
-import json
 import math
 import re
 from pathlib import Path
@@ -8,9 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn import written
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from running import answered, inside
+from running import answered, inside, ran
 from scipy.integrate import quad
 from structure_cases import case, scenes
 
@@ -63,15 +63,14 @@ def test_what_lies_on_the_road_is_told() -> None:
 def test_an_engine_falls_where_the_load_factor_says(share: float, code: int) -> None:
     load = ("--point-load", "2", "50")
     factor = answered("check", *UNDER, *load)["load_factor"]
-    done = inside("check", *UNDER, *load, "--load", str(share * factor), "--method", "direct")
-    assert done.returncode == code
+    asked = (*UNDER, *load, "--load", str(share * factor), "--method", "direct")
+    ran("check", *asked, code=code)
 
 
 def let_go(folder: Path, *options: str) -> Problem:
     """What is simulated by command."""
     run = folder / "run.npz"
-    done = inside("simulate", *options, "--seconds", "0.01", "--out", str(run))
-    assert done.returncode == 0, done.stderr
+    ran("simulate", *options, "--seconds", "0.01", "--out", run)
     return load_recording(run).problem
 
 
@@ -95,17 +94,15 @@ def test_loads_in_a_file_of_blocks_stand_where_its_own_x_says(tmp_path: Path) ->
         {"id": "low", "vertices": [[10, 0], [12, 0], [12, 1], [10, 1]]},
         {"id": "top", "vertices": [[11.5, 1], [13.5, 1], [13.5, 2], [11.5, 2]], "depth": 1},
     ]
-    path = tmp_path / "step.json"
-    path.write_text(json.dumps({"friction": 0.6, "blocks": blocks, "density": 20_000}))
+    table = {"friction": 0.6, "blocks": blocks, "density": 20_000}
+    path = written(tmp_path / "step.json", table)
     # The upper block, 40 kN at 0.5 m beyond its edge, needs a weight on its tail.
-    assert inside("check", str(path)).returncode == 1
-    done = inside("check", str(path), "--point-load", "11.5", "45", "--json")
+    ran("check", path, code=1)
     # About the edge at x = 12: 40 kN times 0.5 m against F times 0.5 m.
-    told = json.loads(done.stdout)
-    assert done.returncode == 0
+    told = answered("check", path, "--point-load", "11.5", "45")
     assert told["problem"]["live_weight_kN"] == pytest.approx(45)
-    assert inside("check", str(path), "--point-load", "11.5", "39").returncode == 1
-    assert inside("check", str(path), "--point-load", "11", "45").returncode == 1
+    ran("check", path, "--point-load", "11.5", "39", code=1)
+    ran("check", path, "--point-load", "11", "45", code=1)
 
 
 SPANNED = (*OPTIONS[:8], "--friction-angle", "35", "--fill", "0.5")
@@ -121,13 +118,12 @@ def test_two_patches_are_both_on_the_road() -> None:
 def test_what_is_on_the_road_is_let_go_drawn_and_bracketed(tmp_path: Path) -> None:
     load = ("--point-load", "2", "300")
     run, picture = tmp_path / "run.npz", tmp_path / "arch.svg"
-    done = inside("simulate", *UNDER, *load, "--seconds", "0.05", "--out", str(run))
-    assert done.returncode == 0, done.stderr
+    ran("simulate", *UNDER, *load, "--seconds", "0.05", "--out", run)
     problem = load_recording(run).problem
     assert problem.load == 1
     assert [each.force[1] for each in problem.live] == [-300_000]
     assert problem.road == ((2, 2, 300_000),)
-    assert inside("render", *UNDER, *load, "--out", str(picture)).returncode == 0
+    ran("render", *UNDER, *load, "--out", picture)
     drawn = picture.read_text()
     assert len(re.findall('id="live-', drawn)) == 1
     # Fill is drawn as an area, and its weight not once more as arrows.
@@ -225,11 +221,8 @@ def test_the_line_that_was_measured_stays_under_a_road(more: tuple[str, ...]) ->
     line = "--span", "8", "--rise", "2.5", "--mu", "0.6", *more
     thick = "--thickness", "0.5"
     least = answered("bracket", *line, *thick)["limit"]
-    codes = [
-        inside("check", *line, "--thickness", repr(share * least)).returncode
-        for share in (0.9999, 1.0001)
-    ]
-    assert codes == [1, 0]
+    for share, code in ((0.9999, 1), (1.0001, 0)):
+        ran("check", *line, "--thickness", share * least, code=code)
 
 
 @pytest.mark.usefixtures("wide_window")

@@ -1,13 +1,13 @@
 """Fill as soil, held against integrals and linear programmes of a bridge put together apart."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from drawn import written
 from own_bridge import SPARED, Bridge
-from running import answered, inside
+from running import answered, ran
 from scipy.integrate import quad
 from test_crossing import is_as_bad_as_said
 
@@ -22,9 +22,7 @@ LIVE = 50 * BRIDGE.wheel(2.01)
 
 def limit(*options: str) -> float:
     """The load factor by command."""
-    done = inside("bracket", *BRIDGE.options(), *WHEEL, "--over", "load", "--json", *options)
-    assert done.returncode == 0, done.stderr
-    return float(json.loads(done.stdout)["limit"])
+    return answered("bracket", *BRIDGE.options(), *WHEEL, "--over", "load", *options)["limit"]
 
 
 def across(bridge: Bridge, left: float, right: float) -> np.ndarray:
@@ -90,7 +88,7 @@ def test_fill_bears_as_much_as_blocks_that_crush_need(strength: float) -> None:
     assert found < limit(*asked)
     for share, code in ((0.9999, 0), (1.0001, 1)):
         given = *asked, "--strength", str(strength), "--load", repr(share * found)
-        assert inside("check", *BRIDGE.options(), *WHEEL, *given).returncode == code
+        ran("check", *BRIDGE.options(), *WHEEL, *given, code=code)
 
 
 def test_what_fill_bears_is_told_and_proved() -> None:
@@ -99,7 +97,7 @@ def test_what_fill_bears_is_told_and_proved() -> None:
     most = limit(*asked)
     for share, code in ((0.999, 0), (1.001, 1)):
         record = answered(
-            "check", *BRIDGE.options(), *WHEEL, *asked, "--load", repr(share * most), code=code
+            "check", *BRIDGE.options(), *WHEEL, *asked, "--load", share * most, code=code
         )
         assert record["proved"]
         assert record["load_factor"] == pytest.approx(most, rel=1e-7)
@@ -155,10 +153,9 @@ WEDGE: dict[str, Any] = {
 
 def test_a_drawn_wall_under_fill_by_hand(tmp_path: Path) -> None:
     """A level top of 3 m and a slope of 1 m across and 2 m down, under a metre of fill."""
-    place = tmp_path / "wedge.json"
-    place.write_text(json.dumps(WEDGE))
+    place = written(tmp_path / "wedge.json", WEDGE)
     asked = ("--fill", "1", "--fill-unit-weight", "18", "--fill-pressure", "0,0.4")
-    record = answered("check", str(place), *asked)
+    record = answered("check", place, *asked)
     # Weight of fill: 3 m of 1 m, and 1 m of 2 m on average; the side from 1 to 3 m deep.
     fill = 18.0 * 0.5 * (3 * 1 + 1 * 2)
     assert record["problem"]["fill_weight_kN"] == pytest.approx(fill)
@@ -167,20 +164,12 @@ def test_a_drawn_wall_under_fill_by_hand(tmp_path: Path) -> None:
     assert reaction["vertical_kN"] == pytest.approx(fill + 20 * 0.5 * 7)
     assert reaction["horizontal_kN"] == pytest.approx(side)
     # The upright side on the left is pressed as deep, by a lever of another height.
-    both = inside("check", str(place), *asked[:4], "--fill-pressure", "0.4", "--json")
-    reaction = json.loads(both.stdout)["reactions"][0]
+    both = answered("check", place, *asked[:4], "--fill-pressure", "0.4")
+    reaction = both["reactions"][0]
     assert reaction["horizontal_kN"] == pytest.approx(0.0, abs=1e-9)
     # What spreads a load: less than half the way down the slope on each side.
-    told = answered(
-        "check",
-        str(place),
-        *asked[:4],
-        "--point-load",
-        "1",
-        "10",
-        "--dispersal",
-        "1:2",
-    )
+    wheel = ("--point-load", "1", "10", "--dispersal", "1:2")
+    told = answered("check", place, *asked[:4], *wheel)
     assert told["problem"]["live_weight_kN"] == pytest.approx(10.0)
 
 
@@ -191,7 +180,6 @@ def test_a_vehicle_crosses_a_drawn_wall_under_fill(
 ) -> None:
     """Wider at its top than at its bed, over which it may tip."""
     head = {"id": "head", "vertices": [[1, 0], [2, 0], [3, 2], [0, 2]]}
-    place = tmp_path / "head.json"
-    place.write_text(json.dumps({**WEDGE, "blocks": [WEDGE["blocks"][0], head]}))
+    place = written(tmp_path / "head.json", {**WEDGE, "blocks": [WEDGE["blocks"][0], head]})
     fill = ("--fill", "1", "--fill-unit-weight", "18")
     is_as_bad_as_said(str(place), *fill, *dispersal)

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn import written
 from kind_cases import KINDS, PLANAR
 from own_bridge import Bridge, thrusts_of_half
-from running import answered, csv_rows, inside
+from running import answered, csv_rows, inside, ran
 from scipy.optimize import brentq
 from structure_cases import case
 from worlds import DIRECT, joint_motion
@@ -319,9 +320,7 @@ def test_moves_are_written_back() -> None:
 def file(tmp_path: Path) -> Path:
     """An arch as a structure file."""
     table = {"kind": "circular-arch", "voussoirs": 8, "friction": 0.8, "thickness": 0.13}
-    path = tmp_path / "arch.json"
-    path.write_text(json.dumps(table))
-    return path
+    return written(tmp_path / "arch.json", table)
 
 
 @pytest.mark.long
@@ -330,8 +329,7 @@ def test_supports_that_move_are_recorded_until_all_has_fallen(
 ) -> None:
     """The supports go apart evenly, until it falls near the way known; all comes to rest."""
     out = tmp_path / "run.npz"
-    done = inside("simulate", str(file), "--over", "spread", "--out", str(out))
-    assert done.returncode == 0, done.stderr
+    ran("simulate", file, "--over", "spread", "--out", out)
     recording = load_recording(out)
     assert recording.problem.title == "circular-arch"
     assert recording.poses.shape[1] == 8 + 2
@@ -448,10 +446,7 @@ def test_curves_are_written(tmp_path: Path) -> None:
     arch = (*arch, "--mu", "0.7")
     for over, name in (("push", "push_g"), ("spread", "thrust_min_kN")):
         table, picture = tmp_path / f"{over}.csv", tmp_path / f"{over}.svg"
-        done = inside(
-            *("bracket", *arch, "--over", over, "--out", str(table), "--out", str(picture))
-        )
-        assert done.returncode == 0, done.stderr
+        ran(*("bracket", *arch, "--over", over, "--out", str(table), "--out", str(picture)))
         rows = csv_rows(table)
         assert len(rows) > 10
         assert float(rows[0][name]) > 0

@@ -9,15 +9,16 @@ import unicodedata
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
 from functools import cache
-from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
 import ezdxf
 import pytest
+from drawn import square
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
-from running import inside
+from report_rows import Page
+from running import inside, ran
 
 from blocksim import load_recording, load_structure, structure_of
 from blocksim.common.files import json_text
@@ -48,16 +49,12 @@ KEPT = {"suppress_health_check": list(HealthCheck), "deadline": None}
 
 def table(text: str) -> dict[str, Any]:
     """A structure in which everything that has a name is called so."""
-
-    def box(x: float, y: float) -> list[list[float]]:
-        return [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]]
-
     return {
         "title": text, "source": text, "notes": [text], "friction": 0.6,
         "blocks": [
-            {"id": f"{text}0", "fixed": True, "vertices": box(0, -1)},
-            {"id": f"{text}1", "vertices": box(0, 0)},
-            {"id": f"{text}2", "vertices": box(0, 1)},
+            {"id": f"{text}0", "fixed": True, "vertices": square(0, -1)},
+            {"id": f"{text}1", "vertices": square(0, 0)},
+            {"id": f"{text}2", "vertices": square(0, 1)},
         ],
     }  # fmt: skip
 
@@ -78,23 +75,14 @@ def require_plain(said: str) -> None:
     assert not [line for line in said.split("\n") if obeys(line)]
 
 
-class Tags(HTMLParser):
-    """The elements of a page, and what is written in it."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.tags: list[str] = []
-        self.feed(page)
-
-    def handle_starttag(self, tag: str, attrs: Any) -> None:  # noqa: ARG002 - as called
-        inner = {"path", "g", "use", "defs", "symbol", "rect", "clippath", "text", "tspan"}
-        if tag not in inner:  # of pictures: letters are paths
-            self.tags.append(tag)
+WITHIN = {"path", "g", "use", "defs", "symbol", "rect", "clippath", "text", "tspan"}
+"""Elements of pictures, of which letters are paths."""
 
 
 def require_page(page: str, usual: str) -> None:
     assert not [line for line in page.split("\n") if obeys(line)]
-    assert Tags(page).tags == Tags(usual).tags
+    tags = [[tag for tag, _ in Page(each).elements] for each in (page, usual)]
+    assert len({tuple(tag for tag in each if tag not in WITHIN) for each in tags}) == 1
 
 
 def cells_of(sheet: str) -> Iterable[list[str]]:
@@ -123,14 +111,14 @@ def test_printable_text_is_one_line_as_long_as_it_was(text: str) -> None:
 
 @cache
 def as_usual(folder: Path) -> subprocess.CompletedProcess[str]:
-    return inside("check", str(written(folder, PLAIN)))
+    return inside("check", written(folder, PLAIN))
 
 
 @settings(max_examples=12, **KEPT)
 @given(text=TEXT)
 def test_lines(text: str, tmp_path: Path) -> None:
     usual = as_usual(tmp_path)
-    done = inside("check", str(written(tmp_path, text)))
+    done = inside("check", written(tmp_path, text))
     assert (done.returncode, done.stderr) == (usual.returncode, "")
     require_plain(done.stdout)
     # It neither adds lines, nor changes the first, which has the verdict.
@@ -144,7 +132,7 @@ def test_lines(text: str, tmp_path: Path) -> None:
 @settings(max_examples=8, **KEPT)
 @given(text=TEXT)
 def test_json(text: str, tmp_path: Path) -> None:
-    done = inside("check", str(written(tmp_path, text)), "--json")
+    done = inside("check", written(tmp_path, text), "--json")
     require_plain(done.stdout)
     assert json.loads(done.stdout)["problem"]["title"] == text
 
@@ -153,9 +141,8 @@ def test_json(text: str, tmp_path: Path) -> None:
 def made(folder: Path, name: str, called: str) -> bytes:
     """Return a report or a sheet of what is called like that."""
     kind = "report" if name.endswith("html") else "render"
-    done = inside(kind, str(written(folder, called)), "--out", str(folder / name))
-    assert (done.returncode, done.stderr) == (0, "")
-    require_plain(done.stdout)
+    done = ran(kind, written(folder, called), "--out", folder / name)
+    require_plain(done)
     return (folder / name).read_bytes()
 
 
@@ -185,16 +172,14 @@ def test_sheets_and_reports(text: str, tmp_path: Path) -> None:
 def test_recordings(text: str, tmp_path: Path) -> None:
     path = tmp_path / "a.npz"
     words = ("--method", "direct", "--seconds", "0.05", "--out", str(path))
-    done = inside("simulate", str(written(tmp_path, text)), *words)
-    assert (done.returncode, done.stderr) == (0, "")
-    require_plain(done.stdout)
+    done = ran("simulate", written(tmp_path, text), *words)
+    require_plain(done)
     for kind in ("gltf", "csv", "json", "png"):
         out = tmp_path / f"a.{kind}"
-        done = inside("render", str(path), "--out", str(out), *(
+        done = ran("render", path, "--out", out, *(
             ("--height", "200") if kind == "png" else ()
         ))  # fmt: skip
-        assert (done.returncode, done.stderr) == (0, "")
-        require_plain(done.stdout)
+        require_plain(done)
     model = json.loads((tmp_path / "a.gltf").read_text())
     names = [each["name"] for each in model["nodes"]] + [model["extras"]["title"]]
     assert not obeys("".join(names))
@@ -229,10 +214,9 @@ def test_sheets_of_cells(cells: list[Any]) -> None:
 def test_names_of_files(name: str, tmp_path: Path) -> None:
     source = written(tmp_path, PLAIN)
     name = f"{name}.json"
-    done = inside("convert", str(source), "--out", str(tmp_path / name))
-    assert (done.returncode, done.stderr) == (0, "")
-    require_plain(done.stdout)
-    first, note, *_ = done.stdout.split("\n")
+    done = ran("convert", source, "--out", tmp_path / name)
+    require_plain(done)
+    first, note, *_ = done.split("\n")
     assert first.startswith(f"wrote {tmp_path}")
     assert first.endswith(".json: 2 blocks, 1 support, 2 joints")
     assert note == f"  {PLAIN}"

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn import written
 from structure_cases import names, of_each_kind, scenes
 
 from blocksim import Arch, InputError, Load, Problem, load_structure, structure_of
@@ -107,8 +108,7 @@ def test_loads_and_gravity():
 
 
 def test_the_same_keys_in_toml(tmp_path: Path):
-    path = tmp_path / "stack.toml"
-    path.write_text(TOML)
+    path = written(tmp_path / "stack.toml", TOML)
     problem = load_structure(path)
     assert problem.mu == math.inf
     assert problem.title == "A stack"

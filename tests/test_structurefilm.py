@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from drawn import square
+from images import turning
 from recorded import drawn_words, recorded
 from structure_cases import scenes
 
@@ -221,8 +222,7 @@ def test_hinges_at_either_end_are_one_thing() -> None:
     moved = np.zeros((2, 3))
     for box, (corner, turn) in enumerate(((1.0, -0.05), (2.0, 0.05))):
         arm = problem.assembly.centres[box] - [corner, 0.0]
-        cos, sin = math.cos(turn), math.sin(turn)
-        way = np.array([[cos, -sin], [sin, cos]]) @ arm - arm
+        way = turning(turn) @ arm - arm
         moved[box] = [*(way / problem.assembly.size), turn]
     run = recording(problem, np.linspace(0, 1, 11)[:, None, None] * moved)
     stage = Stage(run)

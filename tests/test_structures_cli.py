@@ -1,12 +1,12 @@
 """Structures on the command line: asked, bracketed, let go, and refused in one line."""
 
-import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
-from running import answered, inside
+from drawn import written
+from running import answered, ran
 
 from blocksim import load_recording
 
@@ -27,8 +27,7 @@ FACTOR = (0.5 + 0.3 + 0.1) / (0.25 + 0.75 + 1.25)
 
 @pytest.fixture
 def stack(tmp_path: Path) -> str:
-    path = tmp_path / "stack.json"
-    path.write_text(json.dumps(STACK))
+    path = written(tmp_path / "stack.json", STACK)
     return str(path)
 
 
@@ -51,9 +50,7 @@ def test_a_stack_is_checked_with_its_load_factor(stack: str) -> None:
 def test_both_sides_of_its_load_factor(
     stack: str, method: str, share: float, code: int
 ) -> None:
-    answer = answered(
-        "check", stack, "--load", str(share * FACTOR), "--method", method, code=code
-    )
+    answer = answered("check", stack, "--load", share * FACTOR, "--method", method, code=code)
     states = [joint["state"] for joint in answer["joints"]]
     if code:
         # All three turn as one about the lower right corner.
@@ -75,7 +72,7 @@ def test_both_sides_of_its_load_factor(
 def test_brackets_over_load_tilt_and_friction(
     stack: str, over: str, load: float, exact: float, stands: str
 ) -> None:
-    answer = answered("bracket", stack, "--over", over, "--load", str(load))
+    answer = answered("bracket", stack, "--over", over, "--load", load)
     assert answer["limit"] == pytest.approx(exact, rel=1e-7)
     assert answer["low"] < exact < answer["high"]
     assert answer["stands"] == stands
@@ -105,8 +102,7 @@ def test_no_answer_is_beyond_the_range_given(
 
 def test_a_structure_is_let_go_and_read_back(stack: str, tmp_path: Path) -> None:
     out = tmp_path / "run.npz"
-    done = inside("simulate", stack, "--tilt", "25", "--seconds", "0.3", "--out", str(out))
-    assert done.returncode == 0, done.stderr
+    ran("simulate", stack, "--tilt", "25", "--seconds", "0.3", "--out", out)
     found = load_recording(out)
     assert found.problem.title == "Three blocks"
     assert len(found.assembly.blocks) == 3
@@ -133,9 +129,8 @@ def test_least_friction_of_a_wedge_beside_a_block_on_a_slope(tmp_path: Path) -> 
         {"id": "slope", "vertices": [[9, -1], [11, -1], [11, 2 * rise], [9, 0]], "fixed": True},
         {"id": "rider", "vertices": [[9.5, 0.5 * rise], [10.5, 1.5 * rise], [10.5, 1]]},
     ]
-    path = tmp_path / "wedge.json"
-    path.write_text(json.dumps({"friction": 0.9, "blocks": blocks}))
-    answer = answered("bracket", str(path), "--over", "mu")
+    path = written(tmp_path / "wedge.json", {"friction": 0.9, "blocks": blocks})
+    answer = answered("bracket", path, "--over", "mu")
     assert answer["limit"] == pytest.approx(wide, rel=1e-8)
     assert answer["low"] < wide < answer["high"]
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from half_arch import by_half
 from own_balance import SIDES, by_contact_forces, by_pyramids
-from running import answered, inside
+from running import answered, inside, ran, refused
 from scipy.integrate import quad
 from scipy.spatial import Delaunay
 from scipy.spatial.transform import Rotation
@@ -273,7 +273,7 @@ def test_a_stranger_takes_part_by_files(tmp_path: Path) -> None:
     """By penalty springs in 60 lines of numpy, comments and docstrings not counted."""
     folder, answers = tmp_path / "suite", tmp_path / "answers.jsonl"
     asked = ("--level", "20", "--group", "sliding")
-    assert inside("suite", "export", str(folder), *asked).returncode == 0
+    ran("suite", "export", folder, *asked)
     for path in (folder / "scenes").iterdir():
         if not path.name.startswith("incline"):
             path.unlink()
@@ -282,7 +282,7 @@ def test_a_stranger_takes_part_by_files(tmp_path: Path) -> None:
         tokens = list(generate_tokens(file.readline))
     assert len({each.start[0] for each in tokens if each.type in {NAME, NUMBER, OP}}) <= 60
     subprocess.run([sys.executable, script, folder / "scenes", answers], check=True)
-    found = answered("suite", "score", str(answers))
+    found = answered("suite", "score", answers)
     assert found["groups"]["sliding"]["levels"]["20"] == [2, 0, 6]
 
 
@@ -338,8 +338,7 @@ def test_boxes_that_meet_keep_their_momentum() -> None:
 @pytest.fixture(scope="module")
 def suite(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("suite")
-    done = inside("suite", "export", str(folder), "--group", "sliding", "--group", "impact")
-    assert done.returncode == 0, done.stderr
+    ran("suite", "export", folder, "--group", "sliding", "--group", "impact")
     return folder
 
 
@@ -423,12 +422,11 @@ def test_a_page_is_written_and_a_lost_level_told(tmp_path: Path) -> None:
         if each.group == "sliding"
     ]
     out = tmp_path / "out"
-    done = inside("suite", "score", written(tmp_path / "a.jsonl", lines), "--out", str(out))
-    assert done.returncode == 0, done.stderr
+    ran("suite", "score", written(tmp_path / "a.jsonl", lines), "--out", out)
     assert {path.name for path in out.iterdir()} == {"score.html", "score.json", "rows.csv"}
     lines[1]["verdict"] = "falls" if lines[1]["verdict"] == "stands" else "stands"
     path = written(tmp_path / "b.jsonl", lines)
-    done = inside("suite", "score", path, "--expect", str(out / "score.json"))
+    done = inside("suite", "score", path, "--expect", out / "score.json")
     assert done.returncode == 1
     assert done.stderr.startswith("blocksim: sliding: right to 0.1 % was expected")
 
@@ -449,8 +447,7 @@ def test_a_replay_has_the_poses_that_were_said(name: str, tmp_path: Path) -> Non
     poses = np.concatenate([centres + moved, said], axis=-1).tolist()
     path = written(tmp_path / "a.jsonl", [HEAD, {"scene": name, "seconds": 1, "poses": poses}])
     recording, table = str(tmp_path / "run.npz"), tmp_path / "run.json"
-    done = inside("suite", "replay", path, name, "--out", recording)
-    assert done.returncode == 0, done.stderr
+    done = ran("suite", "replay", path, name, "--out", recording)
     arms = np.concatenate(
         [corner - body.centre for body in scene.moving for corner in body.shapes]
     )
@@ -459,9 +456,8 @@ def test_a_replay_has_the_poses_that_were_said(name: str, tmp_path: Path) -> Non
     level = np.zeros((len(arms), 3))
     level[:, : scene.dimensions] = arms
     shift = turned.apply(level)[:, : scene.dimensions] - arms + moved[-1, owner]
-    assert f"a corner has moved {np.linalg.norm(shift, axis=1).max():.3g} m" in done.stdout
-    done = inside("render", recording, "--out", str(table))
-    assert done.returncode == 0, done.stderr
+    assert f"a corner has moved {np.linalg.norm(shift, axis=1).max():.3g} m" in done
+    ran("render", recording, "--out", table)
     found = json.loads(table.read_text())
     np.testing.assert_allclose(found["time_s"], scene.times, atol=1e-12)
     columns = ["x_m", "y_m", "z_m"][: scene.dimensions]
@@ -474,5 +470,4 @@ def test_a_replay_has_the_poses_that_were_said(name: str, tmp_path: Path) -> Non
 
 def test_files_that_cannot_be_read_are_one_line(tmp_path: Path) -> None:
     (tmp_path / "binary").write_bytes(bytes(range(256)))
-    done = inside("suite", "score", "binary", cwd=tmp_path)
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    refused("suite", "score", "binary", cwd=tmp_path)

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from running import alive, blocksim, children, inside, small_files, started, until
+from running import alive, blocksim, children, inside, ran, small_files, started, until
 from sweeps import SIMULATED, Rows, design_of, rows_of, swept, written
 
 FOR_MINUTES = SIMULATED.replace("count = 20", "count = 4000")
@@ -60,7 +60,7 @@ def test_a_full_disk_is_one_line_and_the_next_run_goes_on(
     assert "the system says 'File too large'" in done.stderr
     assert not list(out.glob(".rows-*"))
     assert 0 < len(rows_of(out)) < 40
-    assert inside(*asked, "--workers", "1").returncode == 0
+    ran(*asked, "--workers", "1")
     assert rows_of(out) == uninterrupted
 
 
@@ -90,7 +90,7 @@ def test_what_is_killed_leaves_no_process_and_loses_no_row(
     until(lambda: not any(alive(pid) for pid in workers))
     kept = rows_of(out)
     assert kept
-    assert inside(*written(tmp_path, SIMULATED), "--workers", "1").returncode == 0
+    ran(*written(tmp_path, SIMULATED), "--workers", "1")
     found = rows_of(out)
     assert {name: found[name] for name in kept} == kept
     assert {name: found[name] for name in uninterrupted} == uninterrupted

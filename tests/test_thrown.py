@@ -276,13 +276,13 @@ def test_what_begins_in_motion_is_written_and_read(tmp_path: Path) -> None:
 def test_gravity_is_an_option_and_is_told(tmp_path: Path) -> None:
     path, out, poses = (tmp_path / name for name in ("thrown.json", "run.npz", "run.json"))
     path.write_text(json.dumps(block(5.0, velocity=(1.0, 0.0)).to_dict()))
-    inside("simulate", str(path), "--gravity", "1.62", "--seconds", "0.5", "--out", str(out))
-    inside("render", str(out), "--out", str(poses))
+    inside("simulate", path, "--gravity", "1.62", "--seconds", "0.5", "--out", out)
+    inside("render", out, "--out", poses)
     assert json.loads(poses.read_text())["gravity_m_s2"] == pytest.approx([0, -1.62, 0])
-    said = inside("check", str(path), "--gravity", "1.62", "--json")
+    said = inside("check", path, "--gravity", "1.62", "--json")
     problem = json.loads(said.stdout)["problem"]
     assert problem["gravity_m_s2"] == pytest.approx([0, -1.62, 0])
-    assert "gravity 1.62 m/s2" in inside("check", str(path), "--gravity", "1.62").stdout
+    assert "gravity 1.62 m/s2" in inside("check", path, "--gravity", "1.62").stdout
 
 
 @pytest.mark.long

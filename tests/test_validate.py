@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from report_rows import ARCH, ROW, sliding
+from running import answered
 from running import inside as blocksim
 from test_scenario import ARCHES, LEANING, SAID
 
@@ -109,14 +110,13 @@ def test_infinite_friction_may_be_a_text_in_files(tmp_path: Path) -> None:
 
 
 def test_a_ratio_is_of_the_least_as_built_and_depth_is_told() -> None:
-    asked = ("check", "semicircle", "--depth", "2.5", "--json")
-    answer = json.loads(blocksim(*asked, "--ratio", "0.999").stdout)
+    asked = ("check", "semicircle", "--depth", "2.5")
+    answer = answered(*asked, "--ratio", "0.999", code=1)
     arch = answer["arch"]
     assert arch["eta"] == pytest.approx(0.999 * arch["eta_limit"], rel=1e-14)
     assert (arch["depth"], answer["verdict"]) == (2.5, "collapses")
     assert answer["problem"]["lean_deg"] == 0.0
-    stands = json.loads(blocksim(*asked, "--ratio", "1.001").stdout)
-    assert stands["verdict"] == "stands"
+    assert answered(*asked, "--ratio", "1.001")["verdict"] == "stands"
 
 
 # That it overturns is said with its picture, in test_video.
@@ -131,9 +131,7 @@ DRAWN = "semicircle_tilted_overturns"
     ],
 )
 def test_every_shipped_arch_can_be_checked(name: str) -> None:
-    done = blocksim("check", name, "--json")
-    assert done.stderr == ""
-    answer = json.loads(done.stdout)
+    answer = answered("check", name, code=None)
     assert answer["verdict"] == SAID[name]["expect"][0].get("verdict", "collapses")
 
 

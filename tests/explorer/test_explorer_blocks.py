@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from arches import least
+from shapely import Polygon
 from windows import settle
 
 from blocksim import (
@@ -74,17 +75,14 @@ def random_blocks(random: np.random.Generator, at: int) -> dict[str, Any]:
     }
 
 
-def area(corners: list[list[float]]) -> float:
-    x, y = np.array(corners).T
-    return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2)
-
-
 def as_structure(each: dict[str, Any], aside: float | None = None) -> dict[str, Any]:
     """A structure file of the same: pulled by its load, or aside by what weighs down."""
     down = [math.sin(each["tilt"]), -math.cos(each["tilt"])]
     if aside is not None:
         down = [0.0, -1.0]
-    weight = sum(area(block["corners"]) for block in each["blocks"] if not block["fixed"])
+    weight = sum(
+        Polygon(block["corners"]).area for block in each["blocks"] if not block["fixed"]
+    )
     load = each["load"]
     on = {"block": load["block"], "point": load["point"]}
     table = {
