@@ -31,7 +31,7 @@ def __getattr__(name: str) -> object:
     if name == "__all__":
         return sorted(_places())
     if name in _places():
-        found = getattr(_importlib.import_module(_places()[name]), name)
+        found = getattr(__import__(_places()[name], fromlist=[name]), name)
         globals()[name] = found
         return found
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,5 +1,6 @@
 """The public names, and the module of each: loaded when it is first used."""
 
+from blocksim.arch import theory as theory
 from blocksim.arch.circular import Arch as Arch
 from blocksim.arch.modes import Mode as Mode
 from blocksim.ask.answer import Check as Check
@@ -43,6 +44,7 @@ from blocksim.common.errors import InputError as InputError
 from blocksim.common.errors import MachineError as MachineError
 from blocksim.common.errors import MissingPart as MissingPart
 from blocksim.common.version import __version__ as __version__
+from blocksim.engines.base import Settings as Settings
 from blocksim.kinds.arcade import Arcade as Arcade
 from blocksim.kinds.basket import BasketHandleArch as BasketHandleArch
 from blocksim.kinds.catenary import CatenaryArch as CatenaryArch

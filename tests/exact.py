@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 from mpmath import mp, mpf
 
-from blocksim.arch import limit, theory
+from blocksim import theory
+from blocksim.arch import limit
 
 DIGITS = 50
 mp.dps = DIGITS

@@ -8,9 +8,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-from worlds import Settings
 
-from blocksim import Problem, Recording
+from blocksim import Problem, Recording, Settings
 
 SETTINGS = Settings(step=0.01, sweeps=10, hold_sweeps=10)
 

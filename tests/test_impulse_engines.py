@@ -12,11 +12,20 @@ from typing import Any
 
 import numpy as np
 import pytest
-from arches import ARCHES, arch_at, box, bracket_at, held_in, least, on_a_slope
+from arches import ARCHES, arch_at, box, bracket_at, held_in, least, on_a_slope, problem_at
 from images import mirrored, renumbered
-from worlds import Settings, get_engine, observe, observed_mode
+from worlds import get_engine, observe, observed_mode
 
-from blocksim import Arch, Assembly, CircularArch, JointState, Problem, Verdict, simulate
+from blocksim import (
+    Arch,
+    Assembly,
+    CircularArch,
+    JointState,
+    Problem,
+    Settings,
+    Verdict,
+    simulate,
+)
 
 LONG = pytest.mark.long
 ASIDE = {"pymunk": 0.01, "pybullet": 0.01, "mujoco": 0.005}
@@ -36,9 +45,8 @@ def test_both_sides_of_the_least_thickness(engine: str, arch: Any, side: int) ->
     """By the onset test, and let go, but for mujoco: a motion takes it minutes."""
     *shape, mode = arch
     assert least(math.radians(shape[0]), *shape[1:]).mode_limit is mode
-    built = arch_at(1 + side * ASIDE[engine], *shape)
     moving = engine != "mujoco"
-    seen = observe(CircularArch.of(built, shape[1]).problem(), engine, moving=moving)
+    seen = observe(problem_at(1 + side * ASIDE[engine], *shape), engine, moving=moving)
     right = Verdict.STANDS if side > 0 else Verdict.COLLAPSES
     assert seen.verdict is right
     assert not moving or seen.motion.verdict is right
@@ -50,10 +58,10 @@ def test_both_sides_of_the_least_thickness(engine: str, arch: Any, side: int) ->
 @pytest.mark.parametrize(("engine", "arch"), EACH)
 def test_mode_just_below_the_least_thickness(engine: str, arch: Any) -> None:
     *shape, mode = arch
-    built = arch_at(1 - NEAREST[engine], *shape)
-    seen = observe(CircularArch.of(built, shape[1]).problem(), engine, moving=False)
+    problem = problem_at(1 - NEAREST[engine], *shape)
+    seen = observe(problem, engine, moving=False)
     assert seen.verdict is Verdict.COLLAPSES
-    assert observed_mode(seen.joints, built) is mode
+    assert observed_mode(seen.joints, problem.maker.shape) is mode
 
 
 @pytest.mark.parametrize(
@@ -101,8 +109,7 @@ def verdict(engine: str, assembly: Assembly, mu: float) -> Any:
 def test_mirror_and_order_change_no_verdict(
     engine: str, arch: Any, side: int, change: Callable[[Problem], Problem]
 ) -> None:
-    built = arch_at(1 + side * ASIDE[engine], *arch[:4])
-    image = change(CircularArch.of(built, arch[1]).problem())
+    image = change(problem_at(1 + side * ASIDE[engine], *arch[:4]))
     right = Verdict.STANDS if side > 0 else Verdict.COLLAPSES
     assert verdict(engine, image.assembly, arch[1])[0] is right
 

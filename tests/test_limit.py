@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from own_balance import violation
 from scipy.optimize import brentq
 
-from blocksim import Arch, Mode
-from blocksim.arch import limit, theory
+from blocksim import Arch, Mode, theory
+from blocksim.arch import limit
 from blocksim.arch.limit import least_thickness, slack
 from blocksim.arch.limit.bulk import which_stand
 from blocksim.arch.limit.halfplanes import Joints, half_joints
@@ -85,7 +85,7 @@ def test_no_wrong_none(mu: float, count: int, weight: str, aside: float, stands:
 
     Up to mu = 1.8, where no thickness beyond 2 would be needed on either side.
     """
-    divide = theory.regions.divide_half_angle(mu)
+    divide = theory.divide_half_angle(mu)
     alpha = divide * (1 - aside if stands else 1 + aside)
     continuous = theory.least_thickness(alpha, mu, weight).eta
     built = limit.least_thickness(alpha, mu, count, weight)
@@ -102,10 +102,10 @@ def test_sliding_threshold_where_the_inner_joint_falls_on_a_joint() -> None:
     """Purely sliding: mu at which nothing stands, exact where beta_s/alpha is rational."""
 
     def share(mu: float) -> float:
-        return theory.critical.inner_sliding(mu)[1] / theory.regions.divide_half_angle(mu)
+        return theory.critical.inner_sliding(mu)[1] / theory.divide_half_angle(mu)
 
     mu = brentq(lambda mu: share(mu) - 0.25, 0.2, 1.5, xtol=1e-15)
-    alpha = theory.regions.divide_half_angle(mu)
+    alpha = theory.divide_half_angle(mu)
     assert limit.least_thickness(alpha, mu * (1 + 1e-9), 16).eta is not None
     failed = limit.least_thickness(alpha, mu * (1 - 1e-9), 16)
     assert (failed.eta, failed.mode) == (None, Mode.SS)

@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation, Text
 
-from blocksim import Mode
-from blocksim.arch.theory import landmarks
+from blocksim import Mode, theory
 from blocksim.view.linemap import line_map_figure
 from blocksim.view.mapfigure import LARGEST_MU, MapPoint, map_figure
 from blocksim.view.mapshapes import ISO_DEGREES, iso_angles, map_shapes
@@ -137,7 +136,7 @@ def test_rsr_can_be_read(drawn: Figure) -> None:
     _, near = parts(drawn)
     (name,) = [text for text in near.texts if text.get_text() == "rsr"]
     box = near.transData.inverted().transform(name.get_window_extent())
-    mark = landmarks()["S"]
+    mark = theory.landmarks()["S"]
     assert mark.eta < box[0][1] < box[1][1] < 0.9705
 
 

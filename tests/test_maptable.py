@@ -1,8 +1,6 @@
 """The map in numbers, over the friction angle, and for the weight of sectors."""
 
-import json
 import math
-import tomllib
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -10,17 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 from arches import least
-from running import answered, csv_rows, inside
+from derivations import PAPER
+from running import answered, csv_rows, inside, ran
 
-from blocksim import Mode
-from blocksim.arch.theory import landmarks
+from blocksim import Mode, theory
 from blocksim.view.linemap import line_map_figure
 from blocksim.view.mapfigure import map_figure
 from blocksim.view.mapshapes import ANGLE
 
-PRINTED = tomllib.loads(
-    (Path(__file__).parent / "validation" / "cocchetti_rizzi_2024.toml").read_text("utf-8")
-)
 WEIGHTS = pytest.mark.parametrize(
     "weight", ["centreline", pytest.param("sector", marks=[pytest.mark.long])]
 )
@@ -28,9 +23,7 @@ WEIGHTS = pytest.mark.parametrize(
 
 @cache
 def asked(weight: str) -> dict[str, Any]:
-    done = inside("map", "--json", "--weight", weight)
-    assert done.returncode == 0
-    return json.loads(done.stdout)
+    return answered("map", "--weight", weight)
 
 
 def test_table_1_is_printed() -> None:
@@ -38,9 +31,9 @@ def test_table_1_is_printed() -> None:
     rows = {line.split()[0]: line.split()[1:] for line in done.stdout.splitlines() if line}
     for symbol in ("eta", "mu", "alpha", "h", "beta_r", "beta_s"):
         for value, name in zip(rows[symbol], "TSJB", strict=True):
-            printed = PRINTED["table1"][name][symbol]
+            printed = PAPER["table1"][name][symbol]
             assert float(value) == pytest.approx(printed, rel=1e-13)
-    constants = PRINTED["constants"]
+    constants = PAPER["constants"]
     for name, symbol in (("alpha_s-beta", "alpha_sbeta"), ("alpha_l", "alpha_l"),
                          ("alpha_L", "alpha_L")):  # fmt: skip
         (line,) = [each for each in done.stdout.splitlines() if each.startswith(f"  {name}  ")]
@@ -58,14 +51,14 @@ def test_modes_that_coincide_are_all_told() -> None:
     }  # fmt: skip
     for name, each in marks.items():
         assert each["half_angle_deg"] == pytest.approx(
-            math.degrees(PRINTED["table1"][name]["alpha"]), rel=1e-13
+            math.degrees(PAPER["table1"][name]["alpha"]), rel=1e-13
         )
         assert math.tan(math.radians(each["friction_angle_deg"])) == pytest.approx(each["mu"])
     told = answered("check", "fig18_triple_point", code=1)["arch"]
     assert set(told["modes_theory"]) == {"rrr", "srr", "rrs", "ss"}
     assert told["modes_theory"][0] == told["mode_theory"]
-    words = "bracket --alpha 145 --mu 1.6 --method theory --json"
-    assert json.loads(inside(*words.split()).stdout)["arch"]["modes_theory"] == ["rrs"]
+    words = "bracket --alpha 145 --mu 1.6 --method theory"
+    assert answered(*words.split())["arch"]["modes_theory"] == ["rrs"]
 
 
 def rows_of(
@@ -153,7 +146,7 @@ def test_lines_divide_the_regions(weight: str) -> None:
 @WEIGHTS
 def test_the_numbers_are_a_csv_file(weight: str, tmp_path: Path) -> None:
     out = tmp_path / "map.csv"
-    assert inside("map", "--weight", weight, "--out", str(out)).returncode == 0
+    ran("map", "--weight", weight, "--out", out)
     rows = csv_rows(out)
     record = asked(weight)
     points = [*record["landmarks"], *record["special_angles"],
@@ -170,7 +163,7 @@ def test_over_the_friction_angle(weight: str) -> None:
     assert axes.get_xlim() == (0, 90)
     assert axes.get_xlabel().startswith("friction angle")
     marks = {text.get_text(): text.xy for text in axes.texts if text.get_text() in set("TSJB")}
-    for name, mark in landmarks(weight).items():
+    for name, mark in theory.landmarks(weight).items():
         assert marks[name] == pytest.approx((math.degrees(math.atan(mark.mu)), mark.eta))
     if weight == "centreline":
         # The paper's 54.8 and 60.6 degrees.

@@ -10,9 +10,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 from arches import arch_at, bracket_at, problem_at
-from worlds import ContactProblem, Quality, Settings, Simulation, hold, observe
+from images import moved
+from worlds import ContactProblem, Quality, Simulation, hold, observe
 
-from blocksim import CircularArch, Problem, Verdict, Wall, bracket, check, simulate
+from blocksim import CircularArch, Problem, Settings, Verdict, Wall, bracket, check, simulate
 from blocksim.engines.contact import Solution
 from blocksim.simulation.motion import EARLY, FINER, MOVED, QUIET, moving_run
 
@@ -190,22 +191,6 @@ def test_few_looks_suffice_and_none_is_too_late_for_the_mechanism(below: float) 
 SIDES = [(0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)]
 
 
-def moved_away(problem: Problem, distance: float) -> Problem:
-    """The same built elsewhere, by a distance to the right [size]."""
-    assembly = problem.assembly
-    by = np.array([distance * assembly.size, 0.0])
-    blocks = [
-        replace(block, vertices=block.vertices + by, centre=block.centre + by)
-        for block in assembly.blocks
-    ]
-    joints = [
-        replace(joint, inner=joint.inner + by, outer=joint.outer + by)
-        for joint in assembly.joints
-    ]
-    away = replace(assembly, blocks=tuple(blocks), joints=tuple(joints))
-    return Problem(assembly=away, mu=problem.mu)
-
-
 @pytest.mark.parametrize(("ratio", "right"), SIDES)
 @pytest.mark.parametrize(
     ("engine", "angle", "count", "short"),
@@ -231,9 +216,11 @@ def test_far_from_the_origin(engine: str, ratio: float, right: Verdict) -> None:
     """Beyond, round-off would hide what starts to move, or throw blocks."""
     pytest.importorskip("pybullet" if engine == "pybullet" else "numpy", exc_type=ImportError)
     problem = problem_at(ratio, 90, 0.7, 9)
-    farthest = simulate(problem, method=engine, duration=0.01).settings.farthest
+    assembly = problem.assembly
+    farthest = simulate(problem, method=engine, duration=0.01).settings.farthest * assembly.size
     near, far = (
-        check(moved_away(problem, share * farthest), method=engine) for share in (0.99, 1.01)
+        check(Problem(assembly=moved(assembly, (share * farthest, 0.0)), mu=0.7), method=engine)
+        for share in (0.99, 1.01)
     )
     assert near.verdict is right
     assert "from the origin" not in near.reason

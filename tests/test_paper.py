@@ -2,33 +2,29 @@
 
 import math
 import re
-import tomllib
 from functools import cache
 from pathlib import Path
 
 import derivations
 import numpy as np
 import pytest
+from derivations import PAPER
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
-from running import csv_rows, inside
+from running import csv_rows, ran
 from windows import Windows
 
-from blocksim import Mode
-from blocksim.arch import theory
+from blocksim import Mode, theory
 from blocksim.arch.theory import equations
 from blocksim.studies import paper as study
 from blocksim.view.paper import paper_figure
 from blocksim.view.papersketches import FRICTION_SHOWN, HALF_DEPTH, RATE, moved_block
 from blocksim.view.style import FRICTION, MECHANISM, THRUST
 
-PRINTED = tomllib.loads(
-    (Path(__file__).parent / "validation" / "cocchetti_rizzi_2024.toml").read_text("utf-8")
-)
-TABLE = PRINTED["table1"]
-CAPTIONS = PRINTED["captions"]
+TABLE = PAPER["table1"]
+CAPTIONS = PAPER["captions"]
 RED = "#c00000"
 PHI = {
     13: (40.3, 42.8), 14: (40.3, 42.8), 15: (56.9, 60.4), 16: (56.9, 60.4), 17: (58.0, 42.0),
@@ -121,7 +117,7 @@ def test_fig_3_tells_both_branches_apart(panel: int) -> None:
     colours = {to_hex(each.get_color()) for each in axes.lines if "eq" in str(each.get_label())}
     assert len(colours) == 2
     assert axes.get_xlim() == pytest.approx((0, math.pi))
-    constants = PRINTED["constants"]
+    constants = PAPER["constants"]
     assert upper[0, 0] == 0
     assert lower[-1, 0] == pytest.approx(constants["alpha_l"], rel=1e-12)
     # They meet where the term under the root vanishes, and so its round-off is a root.
@@ -397,8 +393,7 @@ def test_sliding_is_said_to_dilate(number: int) -> None:
 
 def test_the_command_writes_figures_numbers_and_a_page(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    done = inside("paper", str(out), "--figure", "4", "--figure", "1", "--format", "png")
-    assert done.returncode == 0, done.stderr
+    ran("paper", out, "--figure", "4", "--figure", "1", "--format", "png")
     names = {"fig01.png", "fig04.png", "index.html", "numbers.csv"}
     assert {path.name for path in out.iterdir()} == names
     page = (out / "index.html").read_text("utf-8")
@@ -414,7 +409,7 @@ def test_the_command_writes_figures_numbers_and_a_page(tmp_path: Path) -> None:
 def test_the_page_fits_a_phone_and_is_dark_in_the_dark(
     windows: Windows, tmp_path: Path
 ) -> None:
-    assert inside("paper", str(tmp_path), "--figure", "1").returncode == 0
+    ran("paper", tmp_path, "--figure", "1")
     address = (tmp_path / "index.html").as_uri()
     page = windows.open(address, 390, 800, color_scheme="dark")
     assert page.evaluate("document.documentElement.scrollWidth") == 390
@@ -428,8 +423,6 @@ def test_a_number_that_is_not_met_is_an_exit_code(
 ) -> None:
     wrong = {**study.TABLE_1, "T": (0.6796047320989, *study.TABLE_1["T"][1:])}
     monkeypatch.setattr(study, "TABLE_1", wrong)
-    assert inside("paper", str(tmp_path), "--figure", "1").returncode == 0
+    ran("paper", tmp_path, "--figure", "1")
     wrong["T"] = (0.67960473, *study.TABLE_1["T"][1:])
-    done = inside("paper", str(tmp_path), "--figure", "1")
-    assert done.returncode == 1
-    assert "MISSES" in done.stdout
+    assert "MISSES" in ran("paper", tmp_path, "--figure", "1", code=1)

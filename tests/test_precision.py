@@ -15,19 +15,11 @@ import numpy as np
 import pytest
 from mpmath import mpf
 
-from blocksim import Arch, CircularArch, InputError, Mode, bracket, check
-from blocksim.arch import limit, theory
+from blocksim import Arch, CircularArch, InputError, Mode, bracket, check, theory
+from blocksim.arch import limit
 from blocksim.arch.limit.bulk import least_thickness_of_joints
 from blocksim.arch.limit.halfplanes import half_joints
-from blocksim.arch.theory.map import at_points, divide_friction
-from blocksim.arch.theory.regions import (
-    at_inner_sliding,
-    crown_hinge,
-    divide,
-    divide_half_angle,
-    equal_angles,
-    first_sliding,
-)
+from blocksim.arch.theory.regions import at_inner_sliding
 from blocksim.report.answerwords import bracket_lines, check_lines
 
 WEIGHTS = ("centreline", "sector")
@@ -59,7 +51,7 @@ def assert_close(found: float, truth: mpf, moved: mpf, what: object) -> None:
 @pytest.mark.parametrize(("degrees", "mu"), and_long(ARCHES, MORE))
 def test_theory(degrees: float, mu: float, weight: str) -> None:
     alpha = math.radians(degrees)
-    mu = divide_friction(alpha) * (1 - mu) if mu < 0 else mu
+    mu = theory.divide_friction(alpha) * (1 - mu) if mu < 0 else mu
     truth = exact.least_thickness(alpha, mu, weight)
     one, many = theory.least_thickness(alpha, mu, weight), None
     many = theory.least_thicknesses(np.full(5, alpha), mu, weight)
@@ -88,7 +80,7 @@ def test_every_mode_is_asked_about(weight: str) -> None:
 @pytest.mark.parametrize("degrees", [1, 5, 60, 125, 145, 148])
 def test_first_sliding(degrees: float, weight: str) -> None:
     alpha = math.radians(degrees)
-    found = first_sliding(np.array([alpha]), weight)
+    found = theory.first_sliding(np.array([alpha]), weight)
     truth, moved = (
         exact.first_sliding(angle, weight) for angle in (alpha, math.nextafter(alpha, 0))
     )
@@ -96,13 +88,15 @@ def test_first_sliding(degrees: float, weight: str) -> None:
     assert found.eta[0] == theory.least_thickness(alpha, INF, weight).eta
 
 
-@pytest.mark.parametrize("mu", [1e-6, 1e-3, 0.3, 0.99, 1.01, 1.8])
+@pytest.mark.parametrize("mu", [1e-9, 1e-6, 1e-3, 0.3, 0.99, 1.01, 1.8, 3.0])
 def test_divide(mu: float) -> None:
-    angle = divide_half_angle(mu)
+    angle = theory.divide_half_angle(mu)
     truth = exact.divide_half_angle(mu, angle)
     assert angle == pytest.approx(float(truth), rel=RELATIVE)
+    if not 1e-9 < mu < 2.69:  # no thickness up to 2 stands there, or digits drown
+        return
     eta, beta = at_inner_sliding(mu, angle, "centreline")
-    assert divide(np.array([mu])).eta[0] == eta
+    assert theory.divide(np.array([mu])).eta[0] == eta
     assert eta == pytest.approx(float(exact.divide_eta(mu, truth, eta, beta)), rel=RELATIVE)
 
 
@@ -116,7 +110,7 @@ AS_BUILT = and_long(
 @pytest.mark.parametrize(("degrees", "mu", "count"), AS_BUILT)
 def test_limit(degrees: float, mu: float, count: int, weight: str) -> None:
     alpha = math.radians(degrees)
-    mu = divide_friction(alpha) * (1 - mu) if mu < 0 else mu
+    mu = theory.divide_friction(alpha) * (1 - mu) if mu < 0 else mu
     one = limit.least_thickness(alpha, mu, count, weight)
     angles = half_joints(np.array([alpha]), count)
     (many,) = least_thickness_of_joints(angles, np.array([mu]), weight)
@@ -140,7 +134,7 @@ def test_overturning_slides_at_any_finite_friction(mu: float) -> None:
 @pytest.mark.parametrize("mu", and_long([1.0, 2.8, INF], [100.0]))
 def test_what_stands_at_a_point_of_the_map(mu: float, weight: str) -> None:
     """At eta = 2 the widest arch stands, and one wider by 1e-14 does not."""
-    alpha = float(at_points(2.0, mu, weight).half_angle)
+    alpha = float(theory.at_points(2.0, mu, weight).half_angle)
     assert theory.least_thickness(alpha, mu, weight).eta is not None
     wider = exact.least_thickness(alpha * (1 + 1e-14), mu, weight)
     assert exact.least_thickness(alpha * (1 - 1e-15), mu, weight) is not None
@@ -150,14 +144,14 @@ def test_what_stands_at_a_point_of_the_map(mu: float, weight: str) -> None:
 @pytest.mark.parametrize(
     ("line", "value", "field", "named"),
     [
-        (divide, 0.0, "mu", "2.690297882"),
-        (divide, 2.7, "mu", "2.690297882"),
-        (equal_angles, 1.7, "mu", "1.765868463"),
-        (equal_angles, INF, "mu", "1.765868463"),
-        (crown_hinge, 1.77, "mu", "1.777213608"),
-        (partial(crown_hinge, weight="sector"), math.nan, "mu", "1.546270801"),
-        (first_sliding, 2.65, "half_angle", "2.648388899"),
-        (first_sliding, 0.0, "half_angle", "2.648388899"),
+        (theory.divide, 0.0, "mu", "2.690297882"),
+        (theory.divide, 2.7, "mu", "2.690297882"),
+        (theory.equal_angles, 1.7, "mu", "1.765868463"),
+        (theory.equal_angles, INF, "mu", "1.765868463"),
+        (theory.crown_hinge, 1.77, "mu", "1.777213608"),
+        (partial(theory.crown_hinge, weight="sector"), math.nan, "mu", "1.546270801"),
+        (theory.first_sliding, 2.65, "half_angle", "2.648388899"),
+        (theory.first_sliding, 0.0, "half_angle", "2.648388899"),
     ],
 )
 def test_lines_name_their_range(line: object, value: float, field: str, named: str) -> None:

@@ -11,7 +11,6 @@ from blocksim.engines import direct
 from blocksim.engines import get_engine as get_engine
 from blocksim.engines.base import Engine as Engine
 from blocksim.engines.base import Quality as Quality
-from blocksim.engines.base import Settings as Settings
 from blocksim.engines.base import trusted as trusted
 from blocksim.engines.contact import ContactProblem as ContactProblem
 from blocksim.engines.direct import Blocks as Blocks

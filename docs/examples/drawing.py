@@ -4,9 +4,11 @@ The stack is 1.4 m long and 1.5 m high; its centre is 0.3 m from the corner it t
 0.75 m above it. So it topples when the table is tilted by atan(0.3/0.75) = 21.80 degrees.
 """
 
+from math import radians
+
 import ezdxf
 
-from blocksim import ask, load_structure
+from blocksim import bracket, check, load_structure
 
 
 def box(left, bottom, right, top):
@@ -24,9 +26,9 @@ for row in range(3):
 drawing.saveas("stack.dxf")
 
 stack = load_structure("stack.dxf", friction=0.6)
-found = ask.bracket(ask.family_of(stack, "tilt"), method="direct", tol=0.001)
+found = bracket(stack, over="tilt", method="direct", tol=0.001)
 print(f"by simulation between {found.low:.2f} and {found.high:.2f} degrees")
-ask.check(ask.family_of(stack, "tilt").at(found.high)).plot().savefig("drawing.png", dpi=70)
+check(stack.tilted(radians(found.high))).plot().savefig("drawing.png", dpi=70)
 
 headline = (found.low + found.high) / 2
 print(f"it topples at {headline:.2f} degrees")

@@ -6,7 +6,7 @@ Table 1). Arches to the right of the lines fall by turning only.
 
 from math import radians
 
-from blocksim.arch.theory import landmarks, least_thickness
+from blocksim import theory
 from blocksim.view.mapfigure import map_figure
 
 BRIDGES = {"a": (100, 0.75), "b": (125, 0.9), "c": (140, 1.6)}  # half-angle, friction
@@ -14,11 +14,11 @@ BRIDGES = {"a": (100, 0.75), "b": (125, 0.9), "c": (140, 1.6)}  # half-angle, fr
 figure = map_figure(title="Least thickness of three arches")
 axes = figure.axes[0]
 for name, (angle, mu) in BRIDGES.items():
-    least = least_thickness(radians(angle), mu)
+    least = theory.least_thickness(radians(angle), mu)
     print(f"{name}: {angle} degrees, mu {mu}: eta {least.eta:.4f}, mode {least.mode}")
     axes.plot(mu, least.eta, "o", color="white", mec="black", ms=9, zorder=9)
     axes.annotate(name, (mu, least.eta), xytext=(7, -12), textcoords="offset points", zorder=9)
-triple = landmarks()["T"]
+triple = theory.landmarks()["T"]
 axes.plot(triple.mu, triple.eta, "*", color="black", ms=13, zorder=9)
 figure.savefig("own_points.png", dpi=80)
 

@@ -9,14 +9,14 @@ from dataclasses import replace
 import matplotlib.pyplot as plt
 import numpy as np
 
-from blocksim import ask, load_structure
+from blocksim import check, load_structure
 
 block = load_structure("pulse_1x4_05")
 lengths = np.array([0.33, 0.355, 0.38])
 falls, turned = [], []
 for seconds in lengths:
     shaken = replace(block, shaking=replace(block.shaking, duration=seconds))
-    answer = ask.check(shaken, method="pymunk")
+    answer = check(shaken, method="pymunk")
     falls.append(answer.verdict == "collapses")
     turned.append(answer.shaken.rocking.rotation)
     print(f"{seconds:.3f} s: {answer.verdict}")

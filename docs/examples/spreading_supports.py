@@ -6,7 +6,7 @@ independent statics of hinges on the displaced arch (the problem of Ochsendorf, 
 
 import matplotlib.pyplot as plt
 
-from blocksim import ask, structure_of
+from blocksim import bracket, structure_of
 
 shares = {}
 for ratio in (0.12, 0.15):
@@ -19,7 +19,7 @@ for ratio in (0.12, 0.15):
             "voussoirs": 20,
         }
     )
-    found = ask.bracket(ask.family_of(arch, "spread"), method="limit")
+    found = bracket(arch, over="spread", method="limit")
     shares[ratio] = 100 * found.limit
     print(f"t/r {ratio}: the span may grow by {shares[ratio]:.3f} %")
 

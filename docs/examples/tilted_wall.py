@@ -7,16 +7,14 @@ an angle, gravity pushes by the tangent of that angle: so it must fall at atan(0
 from dataclasses import replace
 from math import radians, tan
 
-from blocksim import ask, load_structure
+from blocksim import bracket, check, load_structure
 
 wall = replace(load_structure("ferris_tinloi_3"), live=())
-found = ask.bracket(ask.family_of(wall, "tilt"), method="limit", tol=1e-4)
+found = bracket(wall, over="tilt", method="limit", tol=1e-4)
 print(f"it stands up to {found.low:.3f} degrees, and falls at {found.high:.3f}")
 
 # A little beyond: how does it fall?
-answer = ask.check(
-    replace(wall, gravity=ask.family_of(wall, "tilt").at(found.high * 1.02).gravity)
-)
+answer = check(wall.tilted(radians(found.high * 1.02)))
 answer.plot().savefig("tilted_wall.png", dpi=70)
 
 headline = tan(radians((found.low + found.high) / 2))

@@ -5,12 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from blocksim import Arch, Mode
-from blocksim.arch import limit, theory
+from blocksim import Arch, Mode, theory
+from blocksim.arch import limit
 from blocksim.arch.circular import centroid_factor
 from blocksim.arch.limit import statics
 from blocksim.arch.theory.lines import critical_moment, friction_line, thrust_line
-from blocksim.arch.theory.map import at_points
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
@@ -77,7 +76,7 @@ def test_points_of_the_map_at_many_points(
     page: playwright.Page, weight: str, every: int
 ) -> None:
     _, mu, eta = sample(2, every)
-    expected = at_points(eta, mu, weight)
+    expected = theory.at_points(eta, mu, weight)
     rows = np.column_stack([eta, mu, eta])
     found = evaluate(page, "theory.atPoint(e, m, weight)", rows, weight)
     modes = [[Mode(mode) for mode in row["modes"]] for row in found]

@@ -15,23 +15,18 @@ are written out here from the statics of the half-arch, the weight summed by qua
 """
 
 import math
-import tomllib
-from pathlib import Path
 
 import derivations
 import numpy as np
 import pytest
+from derivations import PAPER
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from blocksim import Mode
-from blocksim.arch import theory
+from blocksim import Mode, theory
 from blocksim.arch.theory import equations
-from blocksim.arch.theory.critical import Critical
-from blocksim.arch.theory.regions import crown_hinge, divide, equal_angles, first_sliding
 from blocksim.studies.paper import TABLE_1, numbers
 
-PAPER = tomllib.loads(Path(__file__).with_name("cocchetti_rizzi_2024.toml").read_text("utf-8"))
 CONSTANTS = PAPER["constants"]
 TABLE = PAPER["table1"]
 CAPTIONS = PAPER["captions"]
@@ -148,15 +143,15 @@ def test_figure_21_both_sides_of_equal_angles() -> None:
 
 
 def test_lines_of_the_map_pass_through_the_captions() -> None:
-    found = first_sliding(np.radians([125.0, 145.0]))
+    found = theory.first_sliding(np.radians([125.0, 145.0]))
     assert found.mu == pytest.approx([0.9245590639478306, 1.761938080825641], rel=1e-13)
     assert found.eta == pytest.approx([0.3849612500740051, 0.7406376307743147], rel=1e-13)
-    left = divide(np.array([0.8477497839674316, 1.536310506737699, 1.809583028035458]))
+    left = theory.divide(np.array([0.8477497839674316, 1.536310506737699, 1.809583028035458]))
     assert left.eta == pytest.approx([0.5081418006878796, 0.7643357111953571, 1], rel=1e-13)
-    same = equal_angles(np.array([1.832508693777595]))
+    same = theory.equal_angles(np.array([1.832508693777595]))
     assert same.eta == pytest.approx([0.9563124518512550], rel=1e-13)
     junction = TABLE["J"]
-    top = crown_hinge(np.array([junction["mu"]]))
+    top = theory.crown_hinge(np.array([junction["mu"]]))
     assert top.eta == pytest.approx([junction["eta"]], rel=1e-12)
 
 
@@ -216,7 +211,7 @@ def near(scale: float) -> object:
     return pytest.approx(0, abs=1e-12 * scale)
 
 
-def solution(alpha: float, mu: float, weight: str = "centreline") -> Critical:
+def solution(alpha: float, mu: float, weight: str = "centreline") -> theory.Critical:
     found = theory.least_thickness(alpha, mu, weight)
     assume(found.eta is not None)
     return found

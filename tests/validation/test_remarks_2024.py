@@ -6,21 +6,17 @@ which is what it is compared with. blocksim's exact statics of voussoirs are ano
 """
 
 import math
-import tomllib
 from itertools import combinations
-from pathlib import Path
 
 import derivations
 import numpy as np
 import pytest
+from derivations import PAPER
 from scipy.optimize import brentq, minimize_scalar, root
 
-from blocksim import Arch, Mode
-from blocksim.arch import limit, theory
-from blocksim.arch.theory.map import at_points
-from blocksim.arch.theory.regions import crown_hinge, divide, equal_angles, first_sliding
+from blocksim import Arch, Mode, theory
+from blocksim.arch import limit
 
-PAPER = tomllib.loads(Path(__file__).with_name("cocchetti_rizzi_2024.toml").read_text("utf-8"))
 TABLE = PAPER["table1"]
 T, J, B = (TABLE[name] for name in "TJB")
 
@@ -286,7 +282,7 @@ def test_no_pure_sliding_above_mu_b() -> None:
         _, eta = inner_hinge(widest(mu, thrust), thrust)
         assert (eta > 2) is (share > 1), share
     mu, eta = np.meshgrid(np.linspace(1.0, 6, 60), np.linspace(0.02, 2, 60))
-    slides = np.array([Mode.SS in names for names in at_points(eta, mu).regions.ravel()])
+    slides = np.array([Mode.SS in names for names in theory.at_points(eta, mu).regions.ravel()])
     assert mu.ravel()[slides].max() <= B["mu"]
     assert mu.ravel()[slides].max() > B["mu"] - 0.1
 
@@ -294,13 +290,13 @@ def test_no_pure_sliding_above_mu_b() -> None:
 def test_with_less_friction_lines_ask_for_less_thickness() -> None:
     """Section 3.1: along every line eta falls as mu does, and the half-angle with it."""
     mu = np.linspace(0.02, B["mu"], 9)
-    lines = [divide(mu), first_sliding(np.linspace(0.1, 2.64, 14)),
-             equal_angles(np.linspace(TABLE["S"]["mu"] + 1e-6, 12, 8)),
-             crown_hinge(np.linspace(J["mu"] + 1e-6, 12, 8))]  # fmt: skip
+    lines = [theory.divide(mu), theory.first_sliding(np.linspace(0.1, 2.64, 14)),
+             theory.equal_angles(np.linspace(TABLE["S"]["mu"] + 1e-6, 12, 8)),
+             theory.crown_hinge(np.linspace(J["mu"] + 1e-6, 12, 8))]  # fmt: skip
     for line in lines:
         assert (np.diff(line.mu) > 0).all()
         assert (np.diff(line.eta) > 0).all()
-        half_angles = at_points(line.eta, line.mu).half_angle
+        half_angles = theory.at_points(line.eta, line.mu).half_angle
         assert (np.diff(half_angles) > 0).all()
 
 
