@@ -144,7 +144,7 @@ def test_a_column_of_unlike_drums_tips_where_it_must(
 @pytest.mark.parametrize("courses", [4, 5, 6])
 def test_walls_of_rounded_corners_are_answered(courses: int, decimals: int) -> None:
     """All that is told of them, too. As for any rounding the friction has to be tan 10 deg."""
-    found = check(structure_of(rounded(bricks(courses, 6), 10, decimals, 0.7)), method="limit")
+    found = check(structure_of(rounded(bricks(courses, 6, 1.0, 0.5), 10, decimals, 0.7)), method="limit")
     assert found.verdict is Verdict.STANDS
     carried = found.carried
     # Half a brick overhangs at the ends of each other course: the least strength is of tipping.
@@ -181,7 +181,7 @@ def proofs() -> Iterator[Table]:
                 ).problem()
             )
     for tilt in (0, 50):
-        yield proof_of(structure_of(rounded(bricks(2, 2), 10, 8)).tilted(math.radians(tilt)))
+        yield proof_of(structure_of(rounded(bricks(2, 2, 1.0, 0.5), 10, 8)).tilted(math.radians(tilt)))
     for friction in (0.2, 0.6):
         yield proof_of(structure_of(on_a_ramp(1e-3, 0.5, friction)))
     for index in range(20, 30):
