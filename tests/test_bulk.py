@@ -73,7 +73,7 @@ sizes = st.floats(0.1, 2.0)
     st.floats(-0.6, 0.6),
     st.floats(-0.5, 0.5),
 )
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_margin_of_a_stack_is_that_of_the_programme(
     boxes: list[tuple[float, float]], mu: float, tilt: float, push: float
 ) -> None:
@@ -254,7 +254,7 @@ def pushed(push: float, **more: Any) -> Problem:
 factor = st.floats(0.5, 2.0)
 
 
-@settings(deadline=None, max_examples=12)
+@settings(max_examples=12)
 @given(permanent=factor, variable=factor, friction=factor, push=st.floats(500, 30_000))
 def test_a_pushed_block_uses_what_hand_statics_say(
     permanent: float, variable: float, friction: float, push: float

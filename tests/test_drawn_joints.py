@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import shapely
 from drawn import Polygon, bricks, rounded, written
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from running import answered, ran, refused
 
@@ -54,7 +54,6 @@ def _answers(degrees: int, decimals: int) -> tuple[Verdict, int]:
     return check(problem, method="limit").verdict, len(problem.assembly.joints)
 
 
-@settings(max_examples=15, deadline=None)
 @given(degrees=st.integers(0, 45), decimals=st.integers(3, 12))
 def test_rounding_changes_no_verdict(degrees: int, decimals: int):
     assert _answers(degrees, decimals) == _answers(degrees, 15)

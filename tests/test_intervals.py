@@ -186,7 +186,7 @@ def margin(dead: list[tuple[float, float, float]], mu: float, turn: float) -> fl
 FORCE = st.floats(-1, 1)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     dead=st.lists(st.tuples(st.floats(0, 1), FORCE, FORCE), min_size=1, max_size=3),
     mu=st.floats(0, 4),
@@ -205,7 +205,7 @@ def test_a_block_under_forces_stands_where_its_resultant_says(
                 assert margin(dead, mu, end) == pytest.approx(0, abs=1e-7)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(low=st.floats(-3, 3), wide=st.floats(1e-3, 4))
 def test_factors_of_a_load_are_two_of_a_moment(low: float, wide: float) -> None:
     """A horizontal live force at the top of a block: overturning to either side."""

@@ -69,7 +69,8 @@ def assert_same_blocks(made: Problem, read: Problem, name: str, *, moved: bool =
 @pytest.mark.parametrize("name", of_each_kind({**LEAST, **PIERS}))
 def test_structures_whose_least_size_is_known(name: str) -> None:
     """The corpus has each arch a little thicker and thinner than that, each pier wider."""
-    least, size = case(name)["expected"]["value"], "pier_width" if name in PIERS else "thickness"
+    least = case(name)["expected"]["value"]
+    size = "pier_width" if name in PIERS else "thickness"
     for told, scene in zip(case(name)["scenes"], scenes(name), strict=True):
         read = structure_of(scene)
         foot = float(np.ptp(in_order(read)[0].vertices[:, 0]))

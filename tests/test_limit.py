@@ -78,7 +78,6 @@ def test_slack_against_the_whole_arch(
     assert violation(assembly, mu, left * (1 + 1e-6), left * (1 + 1e-6)) < 1e-10
 
 
-@settings(max_examples=15)
 @given(st.floats(0.1, 1.8), st.integers(20, 120), weights, st.floats(0.01, 0.1), st.booleans())
 def test_no_wrong_none(mu: float, count: int, weight: str, aside: float, stands: bool) -> None:
     """Off the divide by a percent or more, voussoirs and closed form agree on None.

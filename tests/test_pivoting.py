@@ -184,7 +184,7 @@ def dense(before, after, blocks, rows):
     return matrix
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32), st.integers(1, 8), st.floats(0.05, 3.0))
 def test_a_solution_obeys_newton_signorini_and_coulomb(seed, blocks, mu):
     solution, left, (pressure, friction), (opening, slip) = solved(seed, blocks, mu)
@@ -218,7 +218,7 @@ def test_every_joint_keeps_the_law_of_its_own_friction(seeds):
 
 
 @pytest.mark.long
-@settings(deadline=None, max_examples=500)
+@settings(max_examples=500)
 @given(st.integers(0, 2**32), st.integers(1, 6))
 def test_every_joint_keeps_the_law_of_its_own_friction_wherever_it_is_drawn(seed, blocks):
     keeps_the_law_of_its_own_friction(seed, blocks)
@@ -296,7 +296,7 @@ def test_without_slip_a_pushed_block_turns_over_its_corner_and_does_not_slide():
     assert np.abs(lifted.acceleration[0] - [0.2, 0.5, 0.0]).max() < 1e-9
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32), st.integers(1, 8), st.floats(0.05, 5.0))
 def test_the_path_from_apart_always_arrives(seed, blocks, mu):
     before, after, mass, rows, rates, free = chain(seed, blocks)

@@ -213,7 +213,7 @@ def test_a_keystone_that_leaves_the_plane_takes_all_voussoirs():
 # The answers.
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 @given(
     st.floats(30, 155),
     st.floats(0.35, 3.0),

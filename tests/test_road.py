@@ -170,7 +170,7 @@ def test_an_arch_in_radii_is_loaded_by_name_and_by_place(on: dict[str, Any]) -> 
     assert load.force == pytest.approx([0, -2])
 
 
-@settings(deadline=None, max_examples=12)
+@settings(max_examples=12)
 @given(st.floats(-0.9, 0.8), st.floats(0.05, 0.9), st.floats(-2, 2), st.floats(-5, -0.1))
 def test_a_patch_comes_to_its_force_at_its_middle(
     low: float, width: float, across: float, down: float

@@ -222,7 +222,6 @@ def test_beside_the_lines() -> None:
     friction_angle=st.floats(0.02, math.pi / 2),
     weight=st.sampled_from(WEIGHTS),
 )
-@settings(max_examples=15, deadline=None)
 def test_look_up_inverts_least_thickness(
     half_angle: float, friction_angle: float, weight: str
 ) -> None:

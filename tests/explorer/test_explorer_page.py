@@ -28,6 +28,15 @@ def text(page: playwright.Page, name: str) -> str:
     return page.locator(name).inner_text()
 
 
+def verdict(page: playwright.Page) -> str:
+    return text(page, "#verdict")
+
+
+def number(page: playwright.Page, name: str) -> float:
+    settle(page)
+    return float(page.input_value(f"#{name}-number"))
+
+
 def look_at(page: playwright.Page, address: str) -> None:
     """Change the part of the address after #, and wait until the page has heard of it."""
     page.evaluate(
@@ -65,7 +74,7 @@ def test_one_small_file_that_tells_as_soon_as_it_has_loaded(page: playwright.Pag
     session.send("Performance.enable")
     page.reload()
     assert page.title().startswith("Does the arch stand?")
-    assert text(page, "#verdict") == "On the verge: the least thickness of the continuous arch"
+    assert verdict(page) == "On the verge: the least thickness of the continuous arch"
     assert page.get_attribute("#verdict", "class") == "verdict undecided"
     metrics = session.send("Performance.getMetrics")["metrics"]
     counts = {each["name"]: each["value"] for each in metrics}
@@ -79,38 +88,26 @@ def test_one_small_file_that_tells_as_soon_as_it_has_loaded(page: playwright.Pag
 def test_sliders_tell_at_once_whether_it_stands_and_why(page: playwright.Page) -> None:
     set_arch(page, alpha=90, mu=0.7, eta=0.12)
     least = least_of(math.pi / 2, 0.7)
-    assert (
-        text(page, "#verdict")
-        == "Stands: 12 % above the least thickness of the continuous arch"
-    )
+    assert verdict(page) == "Stands: 12 % above the least thickness of the continuous arch"
     assert float(text(page, "#continuous-eta")) == pytest.approx(least.eta_theory, rel=1e-5)
     assert float(text(page, "#continuous-h")) == pytest.approx(least.thrust, rel=1e-5)
     assert text(page, "#continuous-r") == f"{math.degrees(least.beta_r):.2f}°"
     page.locator("#eta").focus()
     for _ in range(25):
         page.keyboard.press("ArrowLeft")
-    settle(page)
-    assert (
-        text(page, "#verdict")
-        == "Collapses: 12 % below the least thickness of the continuous arch"
-    )
+    assert verdict(page) == "Collapses: 12 % below the least thickness of the continuous arch"
     assert "mode rrr, purely rotational" in text(page, "#because")
     set_arch(page, mu=0.3)
-    assert (
-        text(page, "#verdict")
-        == "Collapses: too little friction for any thickness of the continuous arch"
-    )
+    said = "Collapses: too little friction for any thickness of the continuous arch"
+    assert verdict(page) == said
     assert "nothing stands below μ = 0.3092" in text(page, "#because")
     page.check("#unbounded")
     page.click("#least")
-    settle(page)
-    assert text(page, "#verdict") == "On the verge: the least thickness of the continuous arch"
+    assert verdict(page) == "On the verge: the least thickness of the continuous arch"
     assert page.get_attribute("#verdict", "class") == "verdict undecided"
     set_arch(page, alpha=165, eta=2)
-    assert (
-        text(page, "#verdict")
-        == "Collapses: no thickness of the continuous arch will do, up to η = 2"
-    )
+    said = "Collapses: no thickness of the continuous arch will do, up to η = 2"
+    assert verdict(page) == said
 
 
 @pytest.mark.parametrize(
@@ -134,14 +131,13 @@ def test_hovering_and_clicking_the_map(
         assert f"\n{mode} " in tip
     assert re.match(r"η [\d.]+  μ ([\d.]+|∞)\n. [\d.]+°  h [\d.e-]+\n", tip)
     page.mouse.click(*place(page, mu, eta))
-    settle(page)
-    assert text(page, "#verdict").startswith("On the verge")
-    chosen = float(page.input_value("#eta-number"))
+    assert verdict(page).startswith("On the verge")
+    chosen = number(page, "eta")
     assert chosen == pytest.approx(eta, abs=0.01)
     if mode != "rsr":
         assert text(page, "#continuous-mode") == mode
-    half_angle = float(page.input_value("#alpha-number"))
-    friction = math.inf if math.isinf(mu) else float(page.input_value("#mu-number"))
+    half_angle = number(page, "alpha")
+    friction = math.inf if math.isinf(mu) else number(page, "mu")
     found = (
         least_of(math.radians(half_angle + by), friction).eta_theory for by in (-0.05, 0.05)
     )
@@ -186,9 +182,8 @@ def test_the_map_by_keyboard(page: playwright.Page) -> None:
     page.locator("#map").focus()
     page.keyboard.press("Shift+ArrowUp")
     page.keyboard.press("ArrowRight")
-    settle(page)
-    assert float(page.input_value("#eta-number")) == pytest.approx(0.4)
-    assert float(page.input_value("#mu-number")) == pytest.approx(1.22)
+    assert number(page, "eta") == pytest.approx(0.4)
+    assert number(page, "mu") == pytest.approx(1.22)
     for _ in range(14):
         page.keyboard.press("Shift+ArrowRight")
     settle(page)
@@ -215,14 +210,12 @@ def test_never_says_nonsense(page: playwright.Page, half: int) -> None:
             page.fill("#mu-number", str(mu))
         alpha = float(f"{random.uniform(1, 178):.4g}")
         eta = float(f"{10 ** random.uniform(-6, 0.3):.4g}")
-        page.fill("#alpha-number", str(alpha))
-        page.fill("#eta-number", str(eta))
-        settle(page)
+        set_arch(page, alpha=alpha, eta=eta)
         everything = page.inner_text("body") + page.inner_html("#arch")
         assert not re.search(r"NaN|undefined|Infinity|null", everything), (alpha, mu, eta)
         known = least_of(math.radians(alpha), mu, 27, weight)
         stands = known.eta_theory is not None and eta >= known.eta_theory
-        assert text(page, "#verdict").startswith("Stands" if stands else "Collapses")
+        assert verdict(page).startswith("Stands" if stands else "Collapses")
         looks = "stands" if stands else "collapses"
         assert page.get_attribute("#verdict", "class") == f"verdict {looks}"
         stands = known.eta_limit is not None and eta >= known.eta_limit
@@ -249,7 +242,7 @@ def test_a_finger_on_the_map_moves_the_point_and_beside_it_scrolls(open_page: Op
             wait_until(
                 page,
                 lambda name=name, value=value, near=near: (
-                    abs(float(page.input_value(f"#{name}-number")) - value) < near
+                    abs(number(page, name) - value) < near
                 ),
             )
         assert page.evaluate("scrollY") == 0
@@ -270,8 +263,7 @@ def test_results_are_shown_and_chosen(page: playwright.Page) -> None:
         "semicircle, pymunk, n = 27\nleast η from 0.106 to 0.107, mode rrr"
     )
     page.mouse.click(*place(page, 0.7, 0.1065))
-    settle(page)
-    assert page.input_value("#alpha-number") == "90"
+    assert number(page, "alpha") == 90
     borders = """() => [...document.querySelectorAll("#map .landmark")]
       .map((landmark) => landmark.getAttribute("cx"))"""
     centreline = page.evaluate(borders)
@@ -280,7 +272,7 @@ def test_results_are_shown_and_chosen(page: playwright.Page) -> None:
     assert page.input_value("#weight") == "sector"
     assert page.evaluate(borders) != centreline
     assert drawn.count() == 1
-    assert page.input_value("#alpha-number") == "120"
+    assert number(page, "alpha") == 120
 
 
 def test_a_simulated_point_is_judged_as_built(page: playwright.Page) -> None:
@@ -289,16 +281,14 @@ def test_a_simulated_point_is_judged_as_built(page: playwright.Page) -> None:
     page.mouse.click(*place(page, 0.7, 0.1065))
     settle(page)
     share = f"{(1 - 0.1065 / least) * 100:.2g} %"
-    assert text(page, "#verdict") == (
+    assert verdict(page) == (
         f"Collapses: {share} below the least thickness of 27 voussoirs as built"
     )
     assert text(page, "#simulated") == (
         "Simulated: semicircle, by pymunk, n = 27: least η from 0.106 to 0.107, mode rrr."
     )
     set_arch(page, eta=0.10684)
-    assert text(page, "#verdict") == (
-        "Stands: 0.10 % above the least thickness of 27 voussoirs as built"
-    )
+    assert verdict(page) == "Stands: 0.10 % above the least thickness of 27 voussoirs as built"
     assert text(page, "#built-verdict") == "stands, 0.10 % to spare"
     assert text(page, "#continuous-verdict") == "collapses, 0.55 % short"
     assert float(text(page, "#built-eta")) == pytest.approx(least, rel=1e-5)
@@ -306,10 +296,7 @@ def test_a_simulated_point_is_judged_as_built(page: playwright.Page) -> None:
     assert page.locator("#play").is_disabled()
     assert page.locator("#arch .stone").count() == 27
     page.check("#continuous")
-    settle(page)
-    assert text(page, "#verdict") == (
-        "Collapses: 0.55 % below the least thickness of the continuous arch"
-    )
+    assert verdict(page) == "Collapses: 0.55 % below the least thickness of the continuous arch"
     assert page.locator("#play").is_enabled()
 
 
@@ -365,9 +352,9 @@ def test_the_point_is_in_the_address(page: playwright.Page, open_page: Open) -> 
     assert other.input_value("#view") == "middle"
     # An address that is changed by hand; what it says wrongly is left out.
     look_at(other, "#alpha=90&mu=inf&eta=99&n=2&arch=built&weight=lead")
-    assert other.input_value("#alpha-number") == "90"
+    assert number(other, "alpha") == 90
     assert other.is_checked("#unbounded")
-    assert other.input_value("#eta-number") == "0.3"
+    assert number(other, "eta") == 0.3
     assert other.input_value("#voussoirs") == "27"
     assert other.input_value("#weight") == "centreline"
 
@@ -432,7 +419,7 @@ def test_pictures_are_saved_as_files(open_page: Open, tmp_path: Path, picture: s
         download.value.save_as(saved[kind])
     root = ElementTree.parse(saved["svg"]).getroot()  # noqa: S314 - our own
     words = "".join(root.itertext())
-    assert text(page, "#verdict") in words
+    assert verdict(page) in words
     assert "= 125.00°, μ = 0.9, η = 0.45, 27 voussoirs as built" in words
     shapes = [each.attrib for each in root.iter() if each.tag.endswith(("path", "circle"))]
     drawn = [each[name] for each in shapes for name in ("fill", "stroke")]
@@ -451,13 +438,13 @@ def test_words_say_what_moves(page: playwright.Page) -> None:
     """Nothing that just stands is shown falling without a word."""
     least = least_of(math.radians(125), 0.9, 26).eta_limit
     page.fill("#voussoirs", "26")
-    for share, verdict in ((1, "On"), (0.99, "Collapses:"), (1.01, "Stands:")):
+    for share, first in ((1, "On"), (0.99, "Collapses:"), (1.01, "Stands:")):
         set_arch(page, alpha=125, mu=0.9, eta=least * share)
         told = text(page, "#because")
         assert "mode srr, sliding-rotational" in told
         assert ("Any thinner, it falls as shown" in told) is (share == 1)
-        assert text(page, "#verdict").split()[0] == verdict
-        assert text(page, "#verdict").endswith("of 26 voussoirs as built")
+        assert verdict(page).split()[0] == first
+        assert verdict(page).endswith("of 26 voussoirs as built")
         assert text(page, "#joints").startswith(
             "Mechanism of 26 voussoirs as built at the least thickness: "
             "each springing slides outwards"
@@ -530,9 +517,8 @@ def test_works_at_any_width(open_page: Open, width: int, tmp_path: Path) -> None
         page.touchscreen.tap(*target)
     else:
         page.mouse.click(*target)
-    settle(page)
-    assert float(page.input_value("#eta-number")) == pytest.approx(0.5, abs=0.01)
-    assert text(page, "#verdict").startswith("On the verge")
+    assert number(page, "eta") == pytest.approx(0.5, abs=0.01)
+    assert verdict(page).startswith("On the verge")
     shot = tmp_path / "page.png"
     page.screenshot(path=shot, full_page=True)
     assert shot.stat().st_size > 20_000
@@ -540,9 +526,8 @@ def test_works_at_any_width(open_page: Open, width: int, tmp_path: Path) -> None
 
 def test_prints_on_paper(page: playwright.Page) -> None:
     page.emulate_media(media="print", color_scheme="dark")
-    assert (
-        page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
-    )
+    paper = page.evaluate("getComputedStyle(document.body).backgroundColor")
+    assert paper == "rgb(255, 255, 255)"
     assert not page.locator("#alpha").is_visible()
     assert page.locator("#arch .stone").first.is_visible()
     assert page.pdf(format="A4").startswith(b"%PDF")
@@ -591,7 +576,7 @@ def test_few_voussoirs_are_not_said_to_stand_any_number_of_times(page: playwrigh
         fields = f"alpha={degrees}&mu=2&eta=0.3&n={voussoirs}&arch=built"
         look_at(page, fields)
         exact = least_of(math.radians(degrees), 2.0, voussoirs).eta_limit
-        head = text(page, "#verdict")
+        head = verdict(page)
         assert ("stand at any thickness" in head) == (exact < 1e-9)
         times = re.search(r"(\S+) times the least", head)
         if times:
@@ -617,27 +602,22 @@ def test_the_wheel_and_the_keys_enlarge_the_map_about_a_point(page: playwright.P
     x, y = place(page, 1.0, 0.5)
     page.mouse.move(x, y)
     page.mouse.wheel(0, -600)
-    settle(page)
     low, high, bottom, top = shown(page)
     assert high - low == pytest.approx(1.0, rel=1e-3)
     assert top - bottom == pytest.approx(0.5, rel=1e-3)
     assert (low, high) == (pytest.approx(0.75, abs=0.02), pytest.approx(1.75, abs=0.02))
     page.mouse.click(x, y)
-    settle(page)
-    assert float(page.input_value("#mu-number")) == pytest.approx(1.0, abs=0.01)
-    assert float(page.input_value("#eta-number")) == pytest.approx(0.5, abs=0.005)
+    assert number(page, "mu") == pytest.approx(1.0, abs=0.01)
+    assert number(page, "eta") == pytest.approx(0.5, abs=0.005)
     # Far back again, and beyond: the whole map, and the wheel is the page's.
     page.mouse.wheel(0, 5000)
-    settle(page)
     assert shown(page) == [0, 4, 0, 2]
     x, y = place(page, 3.0, 1.0)
     page.dispatch_event("#map", "dblclick", {"clientX": x, "clientY": y})
-    settle(page)
     low, high, *_ = shown(page)
     assert high - low == pytest.approx(4 / 1.6, rel=1e-3)
     page.focus("#map")
     page.keyboard.press("+")
-    settle(page)
     assert np.diff(shown(page)[:2])[0] == pytest.approx(4 / 1.6**2, rel=1e-3)
     # The address comes a little later.
     wait_until(page, lambda: part_in(page.url) == shown(page))
@@ -650,7 +630,6 @@ def test_the_wheel_and_the_keys_enlarge_the_map_about_a_point(page: playwright.P
     assert page.input_value("#view") == "part"
     for _ in range(12):
         page.click("#nearer", force=True) if page.is_enabled("#nearer") else None
-    settle(page)
     assert np.diff(shown(page)[:2])[0] == pytest.approx(4 / 16, rel=1e-2)
 
 
@@ -658,12 +637,10 @@ def test_the_right_button_shifts_the_map_and_leaves_the_arch(page: playwright.Pa
     x, y = place(page, 2.0, 1.0)
     page.mouse.move(x, y)
     page.mouse.wheel(0, -600)
-    settle(page)
     before, arch = shown(page), page.input_value("#mu-number")
     page.mouse.down(button="right")
     page.mouse.move(x + 60, y - 40, steps=6)
     page.mouse.up(button="right")
-    settle(page)
     after = shown(page)
     assert after[0] < before[0] - 0.05
     assert after[2] < before[2] - 0.02
@@ -687,7 +664,6 @@ def test_two_fingers_enlarge_the_map(open_page: Open) -> None:
         touch("touchMove", -way, way)
         settle(page)
     touch("touchEnd")
-    settle(page)
     low, high, *_ = shown(page)
     assert high - low == pytest.approx(1.0, rel=0.15)
     assert (low + high) / 2 == pytest.approx(2.0, abs=0.15)
@@ -706,9 +682,8 @@ def test_one_slider_thins_the_arch_to_its_least_and_lets_it_fall(page: playwrigh
     for value, share in ((0, 2), (0.25, 1.5), (0.5, 1), (0.75, 1), (1, 1)):
         eta = share * least
         page.evaluate(slid, value)
-        settle(page)
-        assert float(page.input_value("#eta-number")) == pytest.approx(eta, rel=1e-4)
-        assert ("On the verge" in text(page, "#verdict")) == (value >= 0.5)
+        assert number(page, "eta") == pytest.approx(eta, rel=1e-4)
+        assert ("On the verge" in verdict(page)) == (value >= 0.5)
         assert float(page.input_value("#scrub")) == pytest.approx(value, abs=0.005)
         ring = page.locator(".handle .ring").bounding_box()
         assert ring is not None
@@ -733,7 +708,6 @@ def test_the_lesson_asks_six_questions_and_says_what_theory_says(page: playwrigh
     said = {step: least_of(math.radians(a), mu).eta_theory for step, (a, mu) in asked.items()}
     page.click("#learn")
     for step in range(1, 7):
-        settle(page)
         assert text(page, "#lesson h2").startswith(f"{step} of 6")
         wait_until(page, lambda step=step: f"lesson={step}" in page.url)
         choices = page.locator("#lesson p button:not(.ways button)")
@@ -753,7 +727,7 @@ def test_the_lesson_asks_six_questions_and_says_what_theory_says(page: playwrigh
         if step == 5:
             few = least_of(math.pi / 2, 1.0, 5).eta_limit
             assert f"{100 * few:.3g} %" in why
-            assert text(page, "#verdict").startswith("Collapses")
+            assert verdict(page).startswith("Collapses")
         page.click(".ways button:last-child" if step == 6 else ".ways button:text('Next')")
     wait_until(page, page.locator("#lesson").is_hidden)
     assert least_of(math.pi / 2, 0.3).eta_theory is None
@@ -769,8 +743,7 @@ def test_the_frame_for_other_pages_shows_this_arch_alone(page: playwright.Page) 
     assert found
     page.goto("about:blank")  # so that nothing of the page before writes its address later
     page.goto(found[1])
-    settle(page)
-    assert page.input_value("#alpha-number") == "60"
+    assert number(page, "alpha") == 60
     for hidden in ("header", "footer", ".legend-pane", "#lesson", ".save"):
         assert page.locator(hidden).first.is_hidden(), hidden
     assert page.locator("#map").is_visible()
