@@ -15,10 +15,10 @@ from recorded import accessor, parts_of
 from running import inside
 from scipy.spatial.transform import Rotation
 from windows import wait_until
-from worlds import Quality, Settings
+from worlds import Quality
 
 import blocksim
-from blocksim import JointState, Recording
+from blocksim import JointState, Recording, Settings
 from blocksim.blocks.record import to_record
 from blocksim.report.sheetpage import structure_page
 from blocksim.view.film import Film
