@@ -27,6 +27,8 @@ Engines multiply friction by impulses that may be 0, so inf cannot be passed on.
 The thrust below which an inner joint slides is about 1/(4 mu^2) for large mu: at this
 cap 2.5e-7 of the weight scale, far below what an engine resolves.
 """
+ROUGH = 100.0
+"""The same of `direct` in space, where Newton's method is lost in wider cones."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -264,7 +266,7 @@ class Engine(Method):
     rule_in_space, build_in_space : callable or None
         The same of blocks in space, in worlds that are `TakesForces`; None where it moves none
         there.
-    most_friction : float
+    most_friction, most_friction_in_space : float
         Friction above which the engine takes this instead.
     shakes : bool
         Whether its ground can shake, and blocks may begin in motion (`TakesVelocities`).
@@ -302,6 +304,7 @@ class Engine(Method):
     rule_in_space: Callable[[SpatialAssembly], Settings] | None = None
     build_in_space: Callable[[Problem[SpatialAssembly], Settings], World] | None = None
     most_friction: float = FRICTION_CAP
+    most_friction_in_space: float = FRICTION_CAP
     shakes: bool = False
     finds_rest: bool = False
     takes_forces: bool = False

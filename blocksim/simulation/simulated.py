@@ -15,7 +15,6 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.checks import Range
 from blocksim.engines import get_engine
 from blocksim.engines.base import (
-    FRICTION_CAP,
     Engine,
     Quality,
     Settings,
@@ -208,8 +207,9 @@ class Simulation(Generic[Blocks]):
     @property
     def most_friction(self) -> float:
         """Friction above which the engine takes this instead."""
-        most = self.engine.most_friction
-        return min(most, FRICTION_CAP) if self.problem.in_space else most
+        engine = self.engine
+        in_space = engine.most_friction_in_space if self.problem.in_space else math.inf
+        return min(engine.most_friction, in_space)
 
     @cached_property
     def taken(self) -> Problem[Blocks]:

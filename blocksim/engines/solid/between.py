@@ -8,12 +8,11 @@ from numpy.typing import NDArray
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import FaceJoint, SpatialAssembly
+from blocksim.engines.base import ROUGH
 from blocksim.engines.solid.bodies import Bodies
 from blocksim.engines.solid.hulls import Hulls
 from blocksim.engines.solid.meeting import Points, apart, meet, near
 
-ROUGH = 1e3
-"""Friction without a bound is taken as this."""
 ALONG = 0.99
 """Cosine from which on a point of contact is one of a joint."""
 ROUNDED = 4e-3

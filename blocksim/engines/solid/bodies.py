@@ -131,3 +131,9 @@ class Bodies:
         """Return centres and rotation vectors since they were built, (blocks, 6)."""
         turned = place.turns[:-1] @ self.built.turns[:-1].transpose(0, 2, 1)
         return np.hstack([place.centres[:-1], Rotation.from_matrix(turned).as_rotvec()])
+
+
+def carried(places: Array, block: NDArray[np.int64], found: Place, there: Place) -> Array:
+    """Return where places have gone that move with blocks, from one place to another."""
+    own = np.einsum("pji,pj->pi", found.turns[block], places - found.centres[block])
+    return np.einsum("pij,pj->pi", there.turns[block], own) + there.centres[block]

@@ -197,6 +197,8 @@ class _Path:
             )
         )
         size = _product(look, along, along)
+        if not size > 0:
+            return None
         back = back.moved(along, -_product(look, back, along) / size) if self._begun else back
         nothing = Point._make(0.0 * each for each in along)
         return back, nothing.moved(along, -sign / math.sqrt(size))

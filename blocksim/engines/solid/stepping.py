@@ -19,16 +19,15 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.blocks.space.points import JointPoints
-from blocksim.engines.base import Quality, Settings
+from blocksim.engines.base import ROUGH, Quality, Settings
 from blocksim.engines.energy import Balance
 from blocksim.engines.solid.between import (
-    ROUGH,
     DrawnApart,
     FrictionBetween,
     body_of,
     sides_of,
 )
-from blocksim.engines.solid.bodies import Bodies, Place
+from blocksim.engines.solid.bodies import Bodies, Place, carried
 from blocksim.engines.solid.coulomb import solve
 from blocksim.engines.solid.dilation import dilating
 from blocksim.engines.solid.meeting import Points, meet, near
@@ -163,11 +162,13 @@ class SolidBlocks:
             part = min(left, step / 2 ** (halvings + nearer))
             before = vars(self).copy()
             worst, self._residual = self._residual, 0.0
-            deep, closes = 0.0, not self._smooth(part)
+            share = self._smooth(part)
+            deep, closes = 0.0, share < 1
             if closes:
                 vars(self).update(before)
                 if nearer < nearest:
-                    nearer += 1
+                    halves = math.ceil(-math.log2(max(share, 2.0**-NEARER)))
+                    nearer = min(nearest, nearer + halves)
                     continue
                 self._residual = 0.0
                 self._closing(part)
@@ -183,8 +184,11 @@ class SolidBlocks:
         self._quiet = quiet
         self._push_apart()
 
-    def _smooth(self, step: float) -> bool:
-        """Take a step in which what is open stays open; tell whether it did."""
+    def _smooth(self, step: float) -> float:
+        """Take a step in which what is open stays open; tell up to which share of it that does.
+
+        That is 1 where nothing closes, and a half where the step is not solved.
+        """
         velocities, speeding = self._velocities, self._speeding
         gain = step * speeding
         middle = self._place.moved(step / 2 * velocities + step / 8 * gain)
@@ -204,13 +208,13 @@ class SolidBlocks:
         drift[:, 0] += np.maximum(first.gaps, 0.0) / step
         self._solve(points, friction, now, drift / step, shut, middle, step)
         if self._residual > COARSE:
-            return False
+            return 0.5
         self._advance(step, 0.5)
         after = self._gaps(points, middle, self._place)
         opened = first.gaps > PASSED
-        passes = ~shut & (after < -PASSED) & opened
-        passes |= ~shut & ~opened & (after < first.gaps - PASSED)
-        return not passes.any()
+        passes = ~shut & (after < np.where(opened, 0.0, first.gaps) - PASSED)
+        share = np.where(opened, first.gaps, 0.0)[passes] / (first.gaps - after)[passes]
+        return float(share.min(initial=1.0))
 
     def _closing(self, step: float) -> None:
         """Take a step of first order: what is open may close, but not pass."""
@@ -341,9 +345,3 @@ def at_rest(bodies: Bodies) -> Step:
     friction = np.minimum(contacts.friction, ROUGH)
     pull = bodies.pull(bodies.built)
     return bodies.asked(rows, sides, np.zeros((len(places), 3)), pull, friction)
-
-
-def carried(places: Array, block: NDArray[np.int64], found: Place, there: Place) -> Array:
-    """Return where places have gone that move with blocks, from one place to another."""
-    own = np.einsum("pji,pj->pi", found.turns[block], places - found.centres[block])
-    return np.einsum("pij,pj->pi", there.turns[block], own) + there.centres[block]
