@@ -320,6 +320,25 @@ def test_a_case_is_told_by_onset_test_and_moving_run(case: str, name: str) -> No
         assert [each.test for each in answer.evidence][:2] == ["onset test", "moving run"]
 
 
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("case", "side", "name"),
+    [
+        ("arch_15_skew_30_aslant", 1, "mujoco"),
+        ("arch_15_skew_30_crown", 0, "mujoco"),
+        ("dome_8_5_pushed", 1, "mujoco"),
+        ("dome_8_5_stands", 0, "pybullet"),
+        ("tower_108_pushed", 0, "pybullet"),
+    ],
+)
+def test_what_slides_and_what_rests_on_given_forces_is_told(
+    case: str, side: int, name: str
+) -> None:
+    pytest.importorskip(name, exc_type=ImportError)
+    problem, verdict = list(asked(case, 0.01))[side]
+    assert blocksim.check(problem, method=name).verdict is verdict
+
+
 FEW = (
     *("arch_15_skew_0_crown", "arch_15_skew_30_across", "column_4_4_30", "dome_8_5_falls"),
     *("dome_8_5_stands", "jenga_8_falls", "three_posts_shared", "tower_102_pushed", "twist_4"),

@@ -195,10 +195,9 @@ class TellsForces(World, Protocol):
 
 def trusted(world: World, settings: Settings) -> bool:
     """Tell whether the contacts of a world have kept within the bounds allowed."""
-    quality = world.quality()
-    return (quality.residual is None or quality.residual <= settings.residual) and (
-        quality.penetration is None or quality.penetration <= settings.penetration
-    )
+    residual, penetration = world.quality().residual, world.quality().penetration
+    found = residual is None or (residual <= settings.residual and math.isfinite(residual))
+    return found and (penetration is None or penetration <= settings.penetration)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -55,6 +55,8 @@ BREAKING = 0.1
 """Distance at which contact points count as one else, in units of the shortest joint."""
 MOST_BREAKING = 0.02
 """Bullet's own such distance, in units of a block's size."""
+PRESSED = 1e-7
+"""How far the joint with most pressure reaches into itself where pressures are given [size]."""
 BESIDE = 1e-7
 """Distance from the plane from which blocks that meet are put back into it [size]."""
 
@@ -63,6 +65,7 @@ class Planar(Polygons):
     """The blocks of a problem in the plane as bodies: the parts that `bulletmotion` moves."""
 
     turns = (2,)
+    pressed = PRESSED
 
     def __init__(self, problem: Problem) -> None:
         super().__init__(problem)

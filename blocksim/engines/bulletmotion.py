@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from blocksim.engines.bulletblocks import Planar
     from blocksim.engines.bulletsolids import Spatial
 
-PRESSED, SOFT = 1e-7, 10.0
-"""How far the joint with most pressure reaches into itself where pressures are given [size],
-and stiffness of joints times the square of the step in which they are solved [mean mass]."""
+SOFT = 10.0
+"""Where pressures are given, stiffness of joints times the square of the step in which they are
+solved [mean mass]."""
 SETTLED = 1e-3
 """Acceleration from which on blocks that are pressed stay where they have given way to [g]."""
 STEP = 0.1
@@ -113,7 +113,7 @@ class Moving:
         stay near what is given. Friction is left to Bullet.
         """
         pressures = self._parts.pressures(forces)
-        stiffness = max(1.0, float(pressures.max())) / PRESSED
+        stiffness = max(1.0, float(pressures.max())) / self._parts.pressed
         self._short, self._held = math.sqrt(SOFT / stiffness), 0
         self._space.clear()
         self._space.pull(self._parts.problem.gravity)
@@ -160,6 +160,9 @@ class Moving:
                 continue
             way = speed * self._settings.step * self._finer
             parts = min(max(1, math.ceil(way / TRAVEL)), FINEST)
+            if not self._parts.can_be_layered:
+                # Joints that press by themselves go on as they were held.
+                parts = max(parts, math.ceil(self._settings.step / self._short))
             if self._is_layered and self._lifts():
                 self._is_layered = False
                 self._link()

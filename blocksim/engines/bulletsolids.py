@@ -25,6 +25,9 @@ from blocksim.engines.polyhedra import Polyhedra
 
 CORNER = 0.05
 """Side of the box in a corner, over the spread of a joint's corners."""
+PRESSED = 1e-4
+"""How far the joint with most pressure reaches into itself where pressures are given [size].
+Let go, blocks go on in steps that suit such springs: softer ones ask for fewer."""
 BREAKING = 0.1
 """Bullet's breaking threshold, in units of a box."""
 DIAGONAL = np.ones(3) / math.sqrt(3.0)
@@ -38,6 +41,7 @@ class Spatial(Polyhedra):
     breaking = BREAKING
     turns = (3, 4, 5)
     can_be_layered = False
+    pressed = PRESSED
 
     def __init__(self, problem: Problem[SpatialAssembly]) -> None:
         super().__init__(problem)

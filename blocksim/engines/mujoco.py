@@ -14,13 +14,13 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.engines.base import Engine, Settings, World
 from blocksim.engines.mujocoblocks import Planar, library
-from blocksim.engines.mujocomotion import CHATTER, STEP, STILL, Moving
+from blocksim.engines.mujocomotion import STEP, STILL, Moving
 
 HOLD_SWEEPS = 20_000
 """Most time steps of the onset test."""
 UNAIDED = 10_000
 """After how many of them it begins anew, with forces of limit analysis."""
-HOLD_IN_SPACE, UNAIDED_IN_SPACE = 6_000, 1_500
+HOLD_IN_SPACE, UNAIDED_IN_SPACE = 8_000, 1_500
 """The same in space."""
 PARTS = 33
 """MuJoCo's own steps in one of a moving run."""
@@ -38,7 +38,6 @@ USUAL = Settings(
     still=STILL,
     noise=NOISE,
     closing=CLOSING,
-    residual=CHATTER,
 )
 
 

@@ -118,7 +118,7 @@ class Moving:
         """
         self._pressures = np.maximum(forces[..., 0], 0.0)
         self._scatter, self._steady = 0.0, True
-        for softness in (HARDEST, self._softness):
+        for softness in (HARDEST, SOFTER * HARDEST, self._softness):
             self._softness = softness
             self._press(HOLD_STEP)
             library.mj_forward(self._model, self._state)
@@ -186,7 +186,9 @@ class Moving:
         late = self._round(max(sweeps, LEAST_SWEEPS) // 2)
         self._zero = self._state.qpos.copy()
         # What still changes is the contacts' doing, not the arch's.
-        self._steady = np.abs(late - early).max() < STEADY * np.abs(late).max() + STILL
+        self._steady = self._scatter <= CHATTER and bool(
+            np.abs(late - early).max() < STEADY * np.abs(late).max() + STILL
+        )
         return self._rates(late)
 
     def _round(self, sweeps: int) -> Array:
@@ -280,8 +282,8 @@ class Moving:
         return self._blocks.poses(self._state.qpos, self._zero)
 
     def quality(self) -> Quality:
-        """Tell how far accelerations held at rest were from steady."""
-        residual = self._scatter if self._steady else math.inf
+        """Tell whether accelerations held at rest were steady."""
+        residual = None if self._steady else math.inf
         deepest = self._deepest if self._is_rubble else None
         return Quality(residual=residual, penetration=deepest, gain=self._balance.gain)
 

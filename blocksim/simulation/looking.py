@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -90,6 +89,6 @@ class Looking:
     def trusts(self, world: World, settings: Settings, largest: float) -> bool:
         """Tell whether contacts were solved well enough for accelerations of that size."""
         residual = world.quality().residual
-        if not self._in_space or residual is None or math.isinf(settings.residual):
+        if not self._in_space or residual is None:
             return trusted(world, settings)
         return residual <= max(SURE * largest, settings.still)

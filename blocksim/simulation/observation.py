@@ -39,17 +39,25 @@ class Held(Generic[Blocks]):
     def release(
         self, until: float | None = None, progress: Progress = silent
     ) -> Motion[Blocks]:
-        """Let the blocks go as the onset test left them; see `moving_run`."""
-        first = self.onset
+        """Let the blocks go as the onset test left them; see `moving_run`.
+
+        Where it has found rest, and they do not, they begin again with forces of equilibrium.
+        """
+        first, simulation = self.onset, self.simulation
         rests = first.verdict is Verdict.STANDS and not first.may_slide
-        return moving_run(
-            self.simulation,
-            self.world,
-            first.repeat,
-            rests=rests,
-            until=until,
-            progress=progress,
+        motion = moving_run(
+            simulation, self.world, first.repeat, rests=rests, until=until, progress=progress
         )
+        helped = first.forces is not None or not simulation.takes_forces
+        if not rests or helped or until or motion.verdict is Verdict.STANDS:
+            return motion
+        world = simulation.world()
+        again = onset(world, simulation, progress, given=True)
+        if again.forces is None or again.verdict is not Verdict.STANDS:
+            return motion
+        found = moving_run(simulation, world, again.repeat, rests=True, progress=progress)
+        words = found.reason.replace("released", "released with forces of limit analysis", 1)
+        return replace(found, reason=words)
 
     def record(
         self, until: float | None = None, progress: Progress = silent

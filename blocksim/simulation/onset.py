@@ -81,6 +81,7 @@ class Onset:
     `mechanism`, (blocks, 3): Poses after a small displacement (`PROBE`) along the
         accelerations.
     `sweeps`: Sweeps spent.
+    `held`: Those of each call since it began, or began anew with forces.
     `forces`, (joints, 2, 2): Forces it was given to begin with (`blocksim.limit`), if it was.
     `may_slide`: Whether forces of equilibrium exist, and begun with nothing it slides.
     `may_rest`: Whether it starts to move where forces of equilibrium exist.
@@ -93,6 +94,7 @@ class Onset:
     acceleration: float
     mechanism: Array
     sweeps: int
+    held: tuple[int, ...] = ()
     forces: Array | None = None
     may_slide: bool = False
     may_rest: bool = False
@@ -103,7 +105,8 @@ class Onset:
         """Bring a new world of the same blocks to where this test ended."""
         if self.forces is not None:
             cast("TakesForces", world).begin(self.forces)
-        world.hold(self.sweeps)
+        for sweeps in self.held:
+            world.hold(sweeps)
 
     @property
     def reason(self) -> str:
@@ -134,10 +137,17 @@ class Onset:
                 return f"contact forces have not converged: {size}"
 
 
-def onset(world: World, simulation: Simulation[Any], progress: Progress = silent) -> Onset:
+def onset(
+    world: World,
+    simulation: Simulation[Any],
+    progress: Progress = silent,
+    *,
+    given: bool = False,
+) -> Onset:
     """Run the onset test on a world whose blocks are at rest where they were built.
 
     `simulation`: Whose world it is, with what counts as at rest, and the most sweeps to spend.
+    `given`: Begin with forces of equilibrium, where there are any.
     Returns: The world keeps its impulses and can be released from there.
     """
     engine, settings, reduction = simulation.engine, simulation.settings, simulation.reduction
@@ -149,9 +159,12 @@ def onset(world: World, simulation: Simulation[Any], progress: Progress = silent
         )
         return replace(seen, too_far=True)
     allowed, begun = settings.hold_sweeps, reduction.forces if reduction else None
-    # Nothing is known of the far voussoirs before impulses have crossed the assembly.
-    first = min(max(FIRST_SWEEPS, len(problem.assembly.blocks) ** 2), allowed)
-    total, sweeps = 0, first
+    begun = look.equilibrium()[1] if given else begun
+    # Nothing is known of the far voussoirs before impulses have crossed the assembly, which
+    # they do at once where a sweep solves all contacts.
+    crossing = len(problem.assembly.blocks) ** 2 if engine.usual_sweeps > 1 else 0
+    first = min(max(FIRST_SWEEPS, crossing), allowed)
+    total, sweeps, held = 0, first, list[int]()
     if begun is not None:
         cast("TakesForces", world).begin(begun)
     may_rest = may_slide = False
@@ -164,6 +177,8 @@ def onset(world: World, simulation: Simulation[Any], progress: Progress = silent
     while True:
         accelerations = world.hold(sweeps)
         total += sweeps
+        # What keeps nothing makes all sweeps again in each call.
+        held = [*held, sweeps] if engine.keeps_impulses else [sum(held) + sweeps]
         seen = _seen(world, look, settings, built, accelerations, total)
         slides = unasked and _slides(look, seen, late=total > LATE * allowed)
         slow = not helped and total >= (settings.unaided or 0)
@@ -175,10 +190,10 @@ def onset(world: World, simulation: Simulation[Any], progress: Progress = silent
                 forces = look.least()
             if forces is not None and simulation.takes_forces:
                 cast("TakesForces", world).begin(forces)
-                sweeps, begun, may_slide = first, forces, slides
+                sweeps, held, begun, may_slide = first, [], forces, slides
                 continue
         if decided or total >= allowed:
-            seen = replace(seen, forces=begun, may_slide=may_slide)
+            seen = replace(seen, held=tuple(held), forces=begun, may_slide=may_slide)
             return _judged(seen, may_rest, simulation.rougher)
         progress(total / allowed, "onset test")
         sweeps = min(int(total * (GROWTH - 1)), allowed - total)
