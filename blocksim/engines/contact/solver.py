@@ -16,13 +16,13 @@ What each contact does is guessed, and mended until all forces and velocities ag
 - from nothing, the solution for friction that dilates, to half of its digits (`interior.py`),
   then to the last (`associated.py`): of the two answers that Coulomb's may have, rest and
   motion, that is rest if there is any;
-- the end of an interior-point method for Coulomb friction, steep one taken to be less;
-- the end of a short path that begins there;
-- of friction that is not steep, the end of that method with shorter steps, and what springs
-  make of it, then of the way of alternating directions from there (`alternating.py`), and the
-  end of a short path from the best of these;
-- the end of a path that begins with all contacts apart (`path_following.py`), of steep
-  friction with the forces found so far first.
+- the end of an interior-point method for Coulomb friction, steep one less, and a short path;
+- of friction that is not steep, the end of that method with shorter steps; then in motion
+  solutions for friction that dilates with slips found before (`averaged.py`), and short paths
+  from there; from nothing what springs make of the way of alternating directions
+  (`alternating.py`), and a short path from the best of these;
+- the end of a path from all contacts apart (`path_following.py`), of steep friction with the
+  forces found so far first.
 """
 
 from __future__ import annotations
@@ -38,6 +38,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.active_set import by_active_set
 from blocksim.engines.contact.alternating import alternated, followed
 from blocksim.engines.contact.associated import augmented_lagrangian
+from blocksim.engines.contact.averaged import averaged
 from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.coulomb import Contacts, Friction
@@ -233,7 +234,7 @@ class _Tried:
     """
 
     def __init__(self, step: Step, precision: float, *, moves: bool) -> None:
-        self._step, self._precision, self._moves = step, precision, moves
+        self._step, self._precision, self.moves = step, precision, moves
         self._answers: list[Answer] = []
         self.may_rest = False
         self.systems = 0
@@ -252,7 +253,7 @@ class _Tried:
     def is_enough(self) -> bool:
         """Whether nothing longer need be tried."""
         best = self.best
-        return (best.is_settled or self._moves) and best.residual <= ENOUGH
+        return (best.is_settled or self.moves) and best.residual <= ENOUGH
 
     @property
     def best(self) -> Answer:
@@ -271,7 +272,7 @@ class _Tried:
 
     def _wrong(self, answer: Answer) -> tuple[bool, float]:
         """Return how wrong an answer is: at rest what contacts do has to be told, too."""
-        return not (answer.is_settled or self._moves), answer.residual
+        return not (answer.is_settled or self.moves), answer.residual
 
     def _is_solution(self, answer: Answer) -> bool:
         moves = self.may_rest and float(np.abs(answer.x).max()) > AT_REST
@@ -305,16 +306,28 @@ def _at_last(step: Step, tried: _Tried) -> Iterator[Answer | None]:
     """Give what contacts may do where nothing cheaper tells."""
     if not step.friction.some_steep and not tried.is_enough:
         yield (guess := _coulomb(step, CAREFUL[1]))
-        if not tried.is_enough:
-            yield followed(step, guess.forces)
-        for found in alternated(step, guess.forces):
+        if tried.is_enough:
+            return
+        for found in (_by_slips if tried.moves else _by_turns)(step, tried, guess):
+            yield found
             if tried.is_enough:
                 return
-            yield found
-        if not tried.is_enough:
-            yield path_from_guess(step, tried.best, NEAREST_PIECES)
     if not tried.is_enough:
         yield path_from_apart(step)
+
+
+def _by_slips(step: Step, tried: _Tried, _: Answer) -> Iterator[Answer | None]:
+    """Give what friction that dilates tells with slips found before, and paths from there."""
+    for found in averaged(step, tried.best.x):
+        yield found
+        yield path_from_guess(step, found, LAST_PIECES)
+
+
+def _by_turns(step: Step, tried: _Tried, guess: Answer) -> Iterator[Answer | None]:
+    """Give what springs make of a guess, then of alternating directions from there."""
+    yield followed(step, guess.forces)
+    yield from alternated(step, guess.forces)
+    yield path_from_guess(step, tried.best, NEAREST_PIECES)
 
 
 def _parted(step: Step, answer: Answer) -> Iterator[Answer]:
