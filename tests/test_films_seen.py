@@ -15,7 +15,7 @@ from rocking import on_pulse
 from running import ran
 
 import blocksim
-from blocksim import JointState, Recording
+from blocksim import JointState, Problem, Recording
 from blocksim.blocks.acting import Move, push_on_all
 from blocksim.view.camera import FARTHEST, zoomed
 from blocksim.view.canvas import colour
@@ -49,19 +49,21 @@ def filmed(run: Recording, path: Path) -> tuple[Film, list[NDArray[np.uint8]]]:
     return film, frames
 
 
+def seconds_at(film: Film, number: int) -> float:
+    return film._within((number / film.rate - 0.8) / film.slow)
+
+
 def seen_at(film: Film, number: int, points: np.ndarray) -> np.ndarray:
     """Columns and rows of points of space in a frame."""
-    seconds = film._within((number / film.rate - 0.8) / film.slow)
     (view,) = film._views
-    share = film.share(seconds)
+    share = film.share(seconds_at(film, number))
     places = view.centre + share * (view.places(points) - view.centre)
     return np.column_stack([places[:, 0], film.height - places[:, 1]])
 
 
 def time_of(film: Film, number: int) -> float:
     (stage,) = film._stages
-    seconds = film._within((number / film.rate - 0.8) / film.slow)
-    return seconds / math.sqrt(stage.assembly.size / 9.81)
+    return seconds_at(film, number) / math.sqrt(stage.assembly.size / 9.81)
 
 
 def moment_of(film: Film, number: int):
@@ -72,17 +74,23 @@ def corners_of(film: Film, number: int) -> np.ndarray:
     return film._stages[0].corners_at(time_of(film, number))
 
 
+def still(problem: Problem, until: float, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """So many times, and the displacements at each of blocks that stay where they are."""
+    return np.linspace(0, until, count), np.zeros((count, len(problem.assembly.blocks), 3))
+
+
+COLUMN = blocksim.load("column", friction=0.7)
+TOP = len(COLUMN.assembly.blocks) - 1
+
+
 def far_slider() -> Recording:
     """Three courses of a column; the uppermost goes off to the side, far and on the ground."""
-    problem = blocksim.load("column", friction=0.7)
-    count = len(problem.assembly.blocks)
-    times = np.linspace(0, 2, 41)
-    moved = np.zeros((len(times), count, 3))
+    times, moved = still(COLUMN, 2, 41)
     way = np.maximum(0, times - 0.5)
     moved[:, -1, 0] = 6.0 * way
-    ground = problem.assembly.built[0, 1] - problem.assembly.built[count - 1, 1]
+    ground = COLUMN.assembly.built[0, 1] - COLUMN.assembly.built[TOP, 1]
     moved[:, -1, 1] = np.maximum(ground, -4 * way**2)
-    return recorded(problem, moved, times)
+    return recorded(COLUMN, moved, times)
 
 
 @pytest.mark.parametrize("view", ["2d", "3d"])
@@ -198,7 +206,7 @@ def joints_seen(
 
 def drawn_marks(film: Film, number: int) -> NDArray[np.float64]:
     """Points along all marks of joints in a frame: column, row, and how far they reach."""
-    share = film.share(film._within((number / film.rate - 0.8) / film.slow))
+    share = film.share(seconds_at(film, number))
     (view,) = film._views
     found = [np.empty((0, 3))]
     for shape in zoomed(view._joints(moment_of(film, number)), share, view.centre):
@@ -220,27 +228,23 @@ def near(picture: NDArray[np.uint8], tone: str, x: float, y: float, reach: int) 
 
 def test_loads_are_drawn_where_they_act_and_go_with_their_blocks(tmp_path: Path) -> None:
     """A push on the top of a column that turns over; in no other place its colour."""
-    known = blocksim.load("column", friction=0.7)
-    top = len(known.assembly.blocks) - 1
-    block = known.assembly.blocks[top]
-    corner = block.vertices[block.vertices[:, 0].argmin()]
-    push = blocksim.Load(force=np.array([5e3, 0.0]), blocks=(top,), point=corner)
-    problem = replace(known, live=(push,), load=1.0)
-    times = np.linspace(0, 1, 21)
-    moved = np.zeros((21, top + 1, 3))
-    moved[:, top] = np.column_stack([0.3 * times, 0.2 * times, -0.8 * times])
+    corners = COLUMN.assembly.blocks[TOP].vertices
+    corner = corners[corners[:, 0].argmin()]
+    push = blocksim.Load(force=np.array([5e3, 0.0]), blocks=(TOP,), point=corner)
+    problem = replace(COLUMN, live=(push,), load=1.0)
+    times, moved = still(COLUMN, 1, 21)
+    moved[:, TOP] = np.column_stack([0.3 * times, 0.2 * times, -0.8 * times])
     film, frames = filmed(recorded(problem, moved, times), tmp_path / "push.mp4")
-    arm = (corner - known.assembly.centres[top]) / known.assembly.size
+    arm = (corner - COLUMN.assembly.centres[TOP]) / COLUMN.assembly.size
     for number in (0, len(frames) - 1):
         turn = 0.0 if number == 0 else -0.8
         way = np.zeros(2) if number == 0 else np.array([0.3, 0.2])
-        place = known.assembly.built[top, :2] + way + turning(turn) @ arm
+        place = COLUMN.assembly.built[TOP, :2] + way + turning(turn) @ arm
         ((x, y),) = seen_at(film, number, np.append(place, 0.0)[None]).tolist()
         assert near(frames[number], LIVE, x - 8, y, 4)
         assert not near(frames[number], LIVE, x + 40, y, 12)
     assert near(frames[0], LIVE, film.width - 150, film.height - 10, 120)  # the legend
-    still = replace(problem, load=0.0)
-    quiet = Film([recorded(still, 0 * moved, times)], height=HEIGHT)
+    quiet = Film([recorded(replace(problem, load=0.0), 0 * moved, times)], height=HEIGHT)
     assert all(acting.entries == [] for acting in quiet._acting)
     assert DEAD not in {tone for acting in film._acting for _, tone in acting.entries}
 
@@ -253,8 +257,8 @@ def test_a_push_is_one_arrow_in_a_corner_with_its_share_of_the_weight() -> None:
     for problem, words, tone, way in (
         (arch, "push 0.45 g", LIVE, 1), (wall, "push 0.25 g", DEAD, -1),
     ):  # fmt: skip
-        count = len(problem.assembly.blocks)
-        film = Film([recorded(problem, np.zeros((2, count, 3)), np.arange(2.0))], height=720)
+        times, moved = still(problem, 1, 2)
+        film = Film([recorded(problem, moved, times)], height=720)
         (acting,), (stage,) = film._acting, film._stages
         moment = stage.at(0.0)
         assert acting.entries == []
@@ -269,14 +273,11 @@ def test_a_push_is_one_arrow_in_a_corner_with_its_share_of_the_weight() -> None:
 
 def test_the_pulse_has_its_mark_at_the_time_shown() -> None:
     """A half sine of 0.4 g for a second: the words say its value, the marks stand still."""
-    column = blocksim.load("column", friction=0.7)
-    problem = on_pulse(column, "half-sine", 0.4, 1.0)
-    shaking = problem.shaking
-    count = len(problem.assembly.blocks)
-    times = np.linspace(0, 1.6 / math.sqrt(problem.assembly.size / 9.81), 33)
-    film = Film([recorded(problem, np.zeros((33, count, 3)), times)], height=720)
+    problem = on_pulse(COLUMN, "half-sine", 0.4, 1.0)
+    unit = math.sqrt(problem.assembly.size / 9.81)
+    times, moved = still(problem, 1.6 / unit, 33)
+    film = Film([recorded(problem, moved, times)], height=720)
     (acting,), (stage,) = film._acting, film._stages
-    unit = math.sqrt(stage.assembly.size / 9.81)
     for seconds, value in ((0.25, 0.4 * math.sin(math.pi / 4)), (0.5, 0.4), (1.2, 0.0)):
         shapes, labels = acting.aside(stage.at(seconds / unit), 1.0)
         (said,) = [label.words for label in labels]
@@ -287,7 +288,10 @@ def test_the_pulse_has_its_mark_at_the_time_shown() -> None:
     (view,) = film._views
     ends = view.places(np.array([[0.0, 0, 0], [1.0, 0, 0]]))
     pixels = float(ends[1, 0] - ends[0, 0])
-    firsts = [min(s.points[0, 0] for s in acting._marks(shaking, at, 1.0)) for at in (0.0, 1.0)]
+    firsts = [
+        min(s.points[0, 0] for s in acting._marks(problem.shaking, at, 1.0))
+        for at in (0.0, 1.0)
+    ]
     apart = 0.25 * pixels
     gone = (firsts[0] - way * pixels - firsts[1]) / apart
     assert gone == pytest.approx(round(gone), abs=0.02)
@@ -295,19 +299,16 @@ def test_the_pulse_has_its_mark_at_the_time_shown() -> None:
 
 def test_the_amount_of_a_spread_is_told_in_every_frame() -> None:
     """Two supports, 1 m/s of span between them, half of it each: 30 mm after 30 ms."""
-    known = blocksim.load("column", friction=0.7)
-    count = len(known.assembly.blocks)
     moves = tuple(Move(support=0, direction=np.array([way, 0.0])) for way in (-0.5, 0.5))
-    times = np.linspace(0, 1, 5)
-    moved = np.zeros((5, count, 3))
-    for block, way in ((count - 2, -0.5), (count - 1, 0.5)):
-        moved[:, block, 0] = way * 0.1 * times / known.assembly.size
-    film = Film([recorded(replace(known, moves=moves), moved, times)], height=HEIGHT)
+    times, moved = still(COLUMN, 1, 5)
+    for block, way in ((TOP - 1, -0.5), (TOP, 0.5)):
+        moved[:, block, 0] = way * 0.1 * times / COLUMN.assembly.size
+    film = Film([recorded(replace(COLUMN, moves=moves), moved, times)], height=HEIGHT)
     (acting,), (stage,) = film._acting, film._stages
     for time in (0.0, 0.3, 1.0):
         _, (label,) = acting.aside(stage.at(time), 1.0)
         assert label.words == f"supports moved {100 * time:.1f} mm"
-    assert stage.carriers == {count - 2, count - 1}
+    assert stage.carriers == {TOP - 1, TOP}
     assert stage.speed == 0  # supports that move do not say that blocks still do
 
 
@@ -333,23 +334,19 @@ def test_side_by_side_begins_near_and_keeps_every_block() -> None:
 
 def test_what_rounding_moves_does_not_still_move() -> None:
     """A way of 1e-14 of the size from frame to frame is no motion; one of 1e-6 is."""
-    known = blocksim.load("column", friction=0.7)
-    count = len(known.assembly.blocks)
-    times = np.linspace(0, 2, 21)
-    moved = np.zeros((21, count, 3))
+    times, moved = still(COLUMN, 2, 21)
     moved[:10, -1, 0] = 0.02 * np.arange(10)
-    for way, still in ((1e-14, True), (1e-6, False)):
+    for way, rests in ((1e-14, True), (1e-6, False)):
         moved[10:, -1, 0] = 0.2 + way * np.arange(11)
-        (stage,) = Film([recorded(known, moved, times)], height=HEIGHT)._stages
-        assert (stage.speed == 0) is still
+        (stage,) = Film([recorded(COLUMN, moved, times)], height=HEIGHT)._stages
+        assert (stage.speed == 0) is rests
 
 
 def test_what_falls_has_no_line_of_thrust_at_rest() -> None:
     """On a table tilted by 20 deg the column falls: its line is the nearest one."""
-    known = blocksim.load("column", friction=0.7)
-    times, still = np.linspace(0, 1, 3), np.zeros((3, len(known.assembly.blocks), 3))
+    times, moved = still(COLUMN, 1, 3)
     for tilt, words in ((0.0, "line of thrust"), (math.radians(20), "nearest line of thrust")):
-        film = Film([recorded(known.tilted(tilt), still, times)], height=HEIGHT)
+        film = Film([recorded(COLUMN.tilted(tilt), moved, times)], height=HEIGHT)
         (stage,) = film._stages
         assert len(stage.thrust) == 1
         assert [told for told, _ in film._entries(set(), thrust=True)] == [f"{words} at rest"]
@@ -358,9 +355,7 @@ def test_what_falls_has_no_line_of_thrust_at_rest() -> None:
 def test_a_film_ends_with_the_last_block_in_sight(tmp_path: Path) -> None:
     """All blocks slide away together: in the last frame one is still seen."""
     problem = blocksim.load("wall", friction=0.7)
-    count = len(problem.assembly.blocks)
-    times = np.linspace(0, 5, 81)
-    moved = np.zeros((len(times), count, 3))
+    times, moved = still(problem, 5, 81)
     moved[..., 0] = 12.0 * times[:, None]
     run = recorded(problem, moved, times)
     film = Film([run], height=HEIGHT, slow=1)

@@ -270,7 +270,7 @@ def test_a_film_says_that_blocks_still_move_as_it_ends(tmp_path: Path) -> None:
     problem = {"friction": 0.2, "blocks": [floor, slab]}
     (tmp_path / "slab.json").write_text(json.dumps(problem))
     asked = ("render", str(tmp_path / "slab.json"), "--height", "180")
-    done = ran(*asked, "--tilt", "30", "--out", tmp_path / "slides.mp4")
+    done = ran(*asked, "--tilt", "30", "--slow", "1", "--out", tmp_path / "slides.mp4")
     said = re.search(r": ([\d.]+) s of motion.* still move as it ends, at ([\d.]+) m/s", done)
     speed = 9.81 * (math.sin(math.pi / 6) - 0.2 * math.cos(math.pi / 6)) * float(said[1])
     assert float(said[2]) == pytest.approx(speed, rel=0.06)
