@@ -262,7 +262,7 @@ class SolidBlocks:
         self._speeding = found.x.reshape(-1, 6) / bodies.root
 
     def _points(self, place: Place, step: float) -> tuple[Points, Array]:
-        """Find the points of contact about a place, and the friction there."""
+        """Find the points of contact about a place, gaps less those drawn, and the friction."""
         hulls = self.bodies.hulls.placed(*place)
         speed = np.linalg.norm(self._velocities[:, :3], axis=1)
         speed += self.bodies.reach * np.linalg.norm(self._velocities[:, 3:], axis=1)
@@ -270,6 +270,9 @@ class SolidBlocks:
         way = np.append(step * (speed + 2 * step * gravity) + NEAR, 0.0)[hulls.owner]
         pairs = near(hulls, way)
         points = meet(hulls, pairs, way[pairs].sum(axis=1))
+        gaps = points.gaps - self._drawn.at(points)
+        near_by = gaps <= way[points.before] + way[points.after]
+        points = points._replace(gaps=gaps).at(near_by)
         return points, self._friction.at(points)
 
     def _gaps(self, points: Points, found: Place, there: Place) -> Array:
@@ -283,7 +286,7 @@ class SolidBlocks:
         """Return how far places are from the planes of points that have moved."""
         feet = points.places - points.gaps[:, None] * points.normals
         feet = carried(feet, self.bodies.hulls.owner[points.before], found, there)
-        return np.einsum("pi,pi->p", places - feet, normals) - self._drawn.at(points)
+        return np.einsum("pi,pi->p", places - feet, normals)
 
     def _carried(self, points: Points, found: Place, there: Place) -> tuple[Array, Array]:
         """Return axes of points, and their places, elsewhere than where they were found.
@@ -307,7 +310,7 @@ class SolidBlocks:
     def _overlap(self) -> float:
         """Return how deep blocks are within each other."""
         points, _ = self._points(self._place, 0.0)
-        return -float(self._gaps(points, self._place, self._place).min(initial=0.0))
+        return -float(points.gaps.min(initial=0.0))
 
     def _push_apart(self) -> None:
         """Move blocks that overlap apart, as little as contact allows.
