@@ -39,8 +39,6 @@ STRUCTURES = (
     "arch of seven voussoirs",
     "wall of bricks",
 )
-LONGEST = 60.0
-"""Time watched, beyond which nothing is said [sqrt(size/g)]."""
 
 
 def structure(name: str) -> tuple[Problem, float]:
@@ -102,12 +100,10 @@ def asked(case: tuple[str, int], finer: float) -> Row:
     problem, least = structure(name)
     problem = replace(problem, shaking=shaking(np.random.default_rng(seed), least))
     started = time.process_time()
-    usual = shake(problem, "direct", until=LONGEST)
+    usual = shake(problem, "direct")
     between = time.process_time()
     accuracy = usual.recording.settings.accuracy * finer
-    fine = shake(
-        problem, "direct", until=LONGEST, repeat=False, settings={"accuracy": accuracy}
-    )
+    fine = shake(problem, "direct", repeat=False, settings={"accuracy": accuracy})
     assert problem.shaking is not None  # noqa: S101
     return {
         "structure": name,
