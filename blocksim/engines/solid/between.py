@@ -15,9 +15,8 @@ from blocksim.engines.solid.meeting import Points, apart, meet, near
 
 ALONG = 0.99
 """Cosine from which on a point of contact is one of a joint."""
-ROUNDED = 4e-3
-"""Overlap of edges that is none: most of what two blocks come to before they are said to fall
-[size]."""
+ROUNDED = 9e-3
+"""How deep edges that share no joint come into each other, over the thinner of two hulls."""
 
 
 class FrictionBetween:
@@ -83,21 +82,25 @@ class DrawnApart:
         widest = max((abs(each.gap) for each in assembly.joints), default=0.0) / assembly.size
         hulls, reach = bodies.hulls.placed(*bodies.built), widest + 1e-6
         pairs = near(hulls, np.full(self._count, reach))
-        self._keys = self._pairs(*pairs[apart(hulls, pairs) <= 2 * reach].T)
+        pairs = pairs[apart(hulls, pairs) <= 2 * reach]
+        self._keys = self._pairs(*pairs.T)
         self._gaps = np.full(len(self._keys), -np.inf)
         points, joined = as_built(bodies, reach)
         points = points.at(joined)
         place = np.searchsorted(self._keys, self._pairs(points.before, points.after))
         np.maximum.at(self._gaps, place, points.gaps)
-        self._gaps[np.isinf(self._gaps)] = -ROUNDED
+        edges = np.isinf(self._gaps)
+        self._gaps[edges] = 0.0
+        self._rounded = np.where(edges, ROUNDED * hulls.thickness[pairs].min(axis=1), 0.0)
 
     def _pairs(self, one: NDArray[np.int64], other: NDArray[np.int64]) -> NDArray[np.int64]:
         return np.minimum(one, other) * self._count + np.maximum(one, other)
 
-    def at(self, points: Points) -> Array:
-        """Return the gap as drawn between the hulls of each point."""
+    def at(self, points: Points) -> tuple[Array, Array]:
+        """Return the gap of each point as drawn, and how deep its edge is rounded."""
         if not len(self._keys):
-            return np.zeros(len(points.gaps))
+            return np.zeros(len(points.gaps)), np.zeros(len(points.gaps))
         keys = self._pairs(points.before, points.after)
         at = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
-        return np.where(self._keys[at] == keys, self._gaps[at], 0.0)
+        known = self._keys[at] == keys
+        return np.where(known, self._gaps[at], 0.0), np.where(known, self._rounded[at], 0.0)

@@ -270,7 +270,8 @@ class SolidBlocks:
         way = np.append(step * (speed + 2 * step * gravity) + NEAR, 0.0)[hulls.owner]
         pairs = near(hulls, way)
         points = meet(hulls, pairs, way[pairs].sum(axis=1))
-        gaps = points.gaps - self._drawn.at(points)
+        drawn, rounded = self._drawn.at(points)
+        gaps = points.gaps - drawn + rounded
         near_by = gaps <= way[points.before] + way[points.after]
         points = points._replace(gaps=gaps).at(near_by)
         return points, self._friction.at(points)
@@ -308,9 +309,16 @@ class SolidBlocks:
         return Seen(self.bodies.rows(axes, places, sides, there), sides, gaps)
 
     def _overlap(self) -> float:
-        """Return how deep blocks are within each other."""
+        """Return how deep blocks are within each other, deeper than edges are rounded."""
         points, _ = self._points(self._place, 0.0)
         return -float(points.gaps.min(initial=0.0))
+
+    def _overlap_as_drawn(self) -> float:
+        """Return how deep blocks are within each other, with sharp edges."""
+        hulls = self.bodies.hulls.placed(*self._place)
+        pairs = near(hulls, np.zeros(len(hulls.owner)))
+        points = meet(hulls, pairs, np.zeros(len(pairs)))
+        return -float((points.gaps - self._drawn.at(points)[0]).min(initial=0.0))
 
     def _push_apart(self) -> None:
         """Move blocks that overlap apart, as little as contact allows.
@@ -336,7 +344,7 @@ class SolidBlocks:
             way = deep * asked.pushed_by(forces).reshape(-1, 6) / self.bodies.root
             self._place = self._place.moved(way)
         self._place = place
-        self._penetration = max(self._penetration, least)
+        self._penetration = max(self._penetration, self._overlap_as_drawn())
 
 
 def at_rest(bodies: Bodies) -> Step:
