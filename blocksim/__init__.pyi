@@ -13,6 +13,8 @@ from blocksim.ask.cases import Cases as Cases
 from blocksim.ask.cases import Factors as Factors
 from blocksim.ask.cases import check_cases as check_cases
 from blocksim.ask.check import check as check
+from blocksim.ask.crossing import Crossing as Crossing
+from blocksim.ask.crossing import crossing as crossing
 from blocksim.ask.doctor import cite as cite
 from blocksim.ask.options import Options as Options
 from blocksim.ask.simulate import simulate as simulate
@@ -39,6 +41,8 @@ from blocksim.blocks.space.assembly import SpatialAssembly as SpatialAssembly
 from blocksim.blocks.space.extruded import extruded as extruded
 from blocksim.blocks.space.joining import assembly_in_space as assembly_in_space
 from blocksim.blocks.space.maker import SolidMaker as SolidMaker
+from blocksim.blocks.vehicles import Vehicle as Vehicle
+from blocksim.blocks.vehicles import vehicle_of as vehicle_of
 from blocksim.common.errors import BlocksimError as BlocksimError
 from blocksim.common.errors import InputError as InputError
 from blocksim.common.errors import MachineError as MachineError

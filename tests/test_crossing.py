@@ -12,9 +12,7 @@ from own_bridge import Bridge
 from running import answered, inside, ran
 from scipy.integrate import quad
 
-from blocksim import CircularArch
-from blocksim.ask.crossing import crossing
-from blocksim.blocks.vehicles import vehicle_of
+from blocksim import CircularArch, crossing, vehicle_of
 from blocksim.view.curvefigure import envelope_figure
 
 EIGHT = Bridge(span=8.0, rise=3.0, thick=0.45, count=31, fill=0.5)

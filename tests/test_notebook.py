@@ -18,9 +18,17 @@ from drawn import written
 from running import answered
 
 import blocksim
-from blocksim import Arch, CircularArch, bracket, check, collapse, load_structure, structure_of
-from blocksim.ask.crossing import crossing
-from blocksim.blocks.vehicles import vehicle_of
+from blocksim import (
+    Arch,
+    CircularArch,
+    bracket,
+    check,
+    collapse,
+    crossing,
+    load_structure,
+    structure_of,
+    vehicle_of,
+)
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")

@@ -44,10 +44,19 @@ HEADINGS = ("right", "left")
 class Crossing(Shown):
     """What a vehicle that crosses a structure comes to.
 
-    `problem`: The structure, with the vehicle at its worst place as its live load.
-    `low`: What the load factor is at least, everywhere.
-    `places`: Where load factors were found, by heading and from left to right. Between two of
+    Parameters
+    ----------
+    problem : Problem
+        The structure, with the vehicle at its worst place as its live load.
+    vehicle : Vehicle
+    worst : Place
+        Where the load factor is least: `position` [m], `heading` and `load_factor`.
+    low : float
+        What the load factor is at least, everywhere.
+    places : tuple of Place
+        Where load factors were found, by heading and from left to right. Between two of
         them the inverse of the load factor is convex where nothing spreads loads.
+    wall_s : float
     """
 
     problem: Problem
@@ -96,12 +105,25 @@ def crossing(problem: Problem, vehicle: Vehicle, *, progress: Progress = silent)
 
     Axles beyond the structure stand on the ground.
 
-    `problem`: In its plane, at rest without live loads; how fill spreads loads is its own.
+    Parameters
+    ----------
+    problem : Problem
+        In its plane, at rest without live loads; how fill spreads loads is its own.
+    vehicle : Vehicle
+    progress : callable, optional
+
+    Returns
+    -------
+    Crossing
+
+    Raises
+    ------
+    InputError
+        If it falls without the vehicle, has live loads, or no road above blocks that move.
 
     Examples
     --------
-    >>> from blocksim.blocks.vehicles import vehicle_of
-    >>> from blocksim.kinds.circular import CircularArch
+    >>> from blocksim import CircularArch, vehicle_of
     >>> arch = CircularArch(half_angle_deg=60, eta=0.2, friction=0.7, density=2e4)
     >>> round(crossing(arch.problem(), vehicle_of("1@0")).load_factor, 3)
     19.793

@@ -16,8 +16,16 @@ from blocksim.common.files import read_toml, shipped_files
 class Vehicle:
     """Axles that keep their distances.
 
-    `axles`, tuple of (float, float): Place of each along the road, from an origin of the
-        vehicle [m], and weight [N].
+    Parameters
+    ----------
+    axles : tuple of (float, float)
+        Place of each along the road, from an origin of the vehicle [m], and weight [N].
+    title, source : str
+
+    Raises
+    ------
+    InputError
+        If there is none, or one is out of range.
     """
 
     axles: tuple[tuple[float, float], ...]
@@ -79,8 +87,16 @@ def shipped_vehicles() -> dict[str, Path]:
 def vehicle_of(said: str) -> Vehicle:
     """Return a vehicle by its name, from a file, or as axles.
 
-    `said`: A shipped name; a .toml file with `axles`, a list of places [m] and weights [kN],
+    Parameters
+    ----------
+    said : str
+        A shipped name; a .toml file with `axles`, a list of places [m] and weights [kN],
         and a `title` and `source` if wanted; or weights and places, as "10@0,10@1.2".
+
+    Raises
+    ------
+    InputError
+        If it is none of them.
 
     Examples
     --------
