@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from arches import least
+from drawn import bricks, rounded
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from structure_cases import scenes
@@ -240,3 +241,12 @@ def test_arches_have_forces_of_equilibrium_above_their_least_thickness(
     if forces is not None:
         assert inside(forces, mu)
         assert imbalance(assembly, forces) < 1e-7
+
+
+@pytest.mark.parametrize("degrees", [5, 10, 15])
+def test_a_turned_wall_of_rounded_bricks_needs_the_tangent_as_friction(degrees: int) -> None:
+    """Without friction the programme tells nothing where corners are rounded to 1e-9."""
+    wall = structure_of(rounded(bricks(4, 6), degrees, 9, 0.7))
+    told = check(wall, method="limit").carried
+    assert told is not None
+    assert told.least_friction == pytest.approx(math.tan(math.radians(degrees)), rel=1e-4)

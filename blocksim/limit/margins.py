@@ -9,6 +9,7 @@ friction, unused. That is the geometrically safest line of thrust.
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +20,7 @@ from blocksim.common.errors import Unsolved
 from blocksim.limit.bearing import Bearing
 from blocksim.limit.cones import Cones
 from blocksim.limit.crushing import Crushing
-from blocksim.limit.linear import LinearProgramme
+from blocksim.limit.linear import NONE, LinearProgramme
 from blocksim.limit.programme import extreme, most_common
 from blocksim.limit.symmetry import mirror_of, symmetric_forces, symmetric_rates
 
@@ -222,9 +223,13 @@ class _Search:
         return self.seen(share)[:2]
 
     def seen(self, share: float) -> tuple[float, float, Array | None]:
-        """Return the margin at a share, its derivative, and the mechanism that is nearest."""
-        cones = self._cones(share)
-        found = most_common(cones, self._pull, self._solver)
+        """Return the margin at a share, its derivative, and the mechanism that is nearest.
+
+        A share of which the programme tells nothing counts as too little.
+        """
+        cones, found = self._cones(share), NONE
+        with suppress(Unsolved):
+            found = most_common(cones, self._pull, self._solver)
         if not found.exists:
             return -math.inf, math.nan, None
         margin, rates = float(found.values[-1]), cones.rates(found.prices)
