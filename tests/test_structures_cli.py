@@ -62,17 +62,17 @@ def test_both_sides_of_its_load_factor(
 
 
 @pytest.mark.parametrize(
-    ("over", "load", "exact", "stands"),
+    ("over", "given", "exact", "stands"),
     [
-        ("load", 0, FACTOR, "low"),
-        ("tilt", 0, math.degrees(math.atan(FACTOR)), "low"),
-        ("mu", 0.2, 0.2, "high"),
+        ("load", (), FACTOR, "low"),
+        ("tilt", ("--load", "0"), math.degrees(math.atan(FACTOR)), "low"),
+        ("mu", ("--load", "0.2"), 0.2, "high"),
     ],
 )
 def test_brackets_over_load_tilt_and_friction(
-    stack: str, over: str, load: float, exact: float, stands: str
+    stack: str, over: str, given: tuple[str, ...], exact: float, stands: str
 ) -> None:
-    answer = answered("bracket", stack, "--over", over, "--load", load)
+    answer = answered("bracket", stack, "--over", over, *given)
     assert answer["limit"] == pytest.approx(exact, rel=1e-7)
     assert answer["low"] < exact < answer["high"]
     assert answer["stands"] == stands

@@ -139,7 +139,9 @@ class SolidBlocks:
         points, _ = self._points(self._place, 0.0)
         places, axes = assembly.points / assembly.size, contacts.axes[contacts.joint]
         pushes = np.einsum("pi,pij->pj", forces, axes)
-        joined = np.array([sides_of(each) for each in assembly.joints])[contacts.joint]
+        joined = np.array([sides_of(each) for each in assembly.joints]).reshape(-1, 2)[
+            contacts.joint
+        ]
         sides = np.stack([self._body[points.before], self._body[points.after]], axis=1)
         ours, theirs = np.sort(sides, axis=1), np.sort(joined, axis=1)
         self._borne = Borne.nothing(points)
