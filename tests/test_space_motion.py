@@ -29,7 +29,7 @@ from blocksim.engines.direct import USUAL
 from blocksim.engines.solid.between import ROUNDED
 from blocksim.engines.solid.meeting import Points
 from blocksim.engines.solid.memory import Borne
-from blocksim.engines.solid.stepping import SolidBlocks
+from blocksim.engines.solid.stepping import SolidBlocks, depth
 from blocksim.view.film import Film
 
 
@@ -113,7 +113,7 @@ def test_what_is_let_go_does_what_the_onset_test_said(name: str) -> None:
 def test_blocks_meet_where_their_joints_are(name: str) -> None:
     """Two ways to find points of contact: of blocks as built, and of blocks that move."""
     stepping = SolidBlocks(structure_of(case(name)["scene"]), USUAL)
-    points, _ = stepping._points(stepping._place, 0.0)
+    points, *_ = stepping._points(stepping._place, 0.0)
     closed = int((points.gaps < 1e-6).sum())
     joints = stepping.bodies.problem.assembly.joints
     assert closed == sum(len(joint.points) for joint in joints)
@@ -124,8 +124,8 @@ def test_what_shares_an_edge_as_drawn_and_no_joint_is_not_closed(made: Any) -> N
     """Points of contact that are closed lie along joints, of stones with many parts, too."""
     problem = replace(made, friction=0.7).problem()
     stepping = SolidBlocks(problem, USUAL)
-    points, _ = stepping._points(stepping._place, 0.0)
-    closed = stepping._gaps(points, stepping._place, stepping._place) < 1e-6
+    points, *_ = stepping._points(stepping._place, 0.0)
+    closed = points.gaps < 1e-6
     owner = stepping.bodies.hulls.owner
     for at in np.flatnonzero(closed).tolist():
         sides = {int(owner[points.before[at]]), int(owner[points.after[at]])}
@@ -273,9 +273,9 @@ def test_blocks_that_overlap_are_pushed_apart_though_others_are_in_the_way(seed:
     way = np.zeros_like(stepping._velocities)
     way[:, :3] = 1e-3 * np.random.default_rng(seed).normal(size=(len(way), 3))
     stepping._place = stepping._place.moved(way)
-    assert stepping._overlap() > 2e-3
+    assert depth(stepping._points(stepping._place, 0.0)[0]) > 2e-3
     stepping._push_apart()
-    assert stepping._overlap() < 1e-6
+    assert depth(stepping._points(stepping._place, 0.0)[0]) < 1e-6
     # Edges that share no joint are rounded.
     assert (
         stepping.quality().penetration < 1e-6 + ROUNDED * stepping.bodies.hulls.thickness.max()

@@ -27,8 +27,6 @@ Engines multiply friction by impulses that may be 0, so inf cannot be passed on.
 The thrust below which an inner joint slides is about 1/(4 mu^2) for large mu: at this
 cap 2.5e-7 of the weight scale, far below what an engine resolves.
 """
-ROUGH = 100.0
-"""The same of `direct` in space, where Newton's method is lost in wider cones."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -19,8 +19,9 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.common.checks import require
 from blocksim.common.version import __version__
-from blocksim.engines.base import ROUGH, Engine, Quality, Settings, World
+from blocksim.engines.base import Engine, Quality, Settings, World
 from blocksim.engines.energy import Balance, energy
+from blocksim.engines.solid import MOST_FRICTION
 from blocksim.engines.stepping import LEAST, RESIDUAL, Stepping
 
 STEP = 0.025
@@ -173,7 +174,7 @@ ENGINE = Engine(
     adjustable=("step", "accuracy", "still", "rest", "restitution"),
     finest=1e-8,
     most_friction=math.inf,
-    most_friction_in_space=ROUGH,
+    most_friction_in_space=MOST_FRICTION,
     shakes=True,
     finds_rest=True,
     tells_forces=True,

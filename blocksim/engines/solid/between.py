@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import FaceJoint, SpatialAssembly
-from blocksim.engines.base import ROUGH
+from blocksim.engines.solid import MOST_FRICTION
 from blocksim.engines.solid.bodies import Bodies
 from blocksim.engines.solid.hulls import Hulls
 from blocksim.engines.solid.meeting import Points, apart, meet, near
@@ -23,11 +23,11 @@ class FrictionBetween:
     """Friction between hulls: of their joint where they have one, else that of all."""
 
     def __init__(self, problem: Problem[SpatialAssembly], hulls: Hulls) -> None:
-        self._all, self._bodies = min(problem.mu, ROUGH), body_of(hulls)
+        self._all, self._bodies = min(problem.mu, MOST_FRICTION), body_of(hulls)
         self._own: dict[tuple[int, int], float] = {}
         for joint, mu in zip(problem.assembly.joints, problem.friction.tolist(), strict=True):
             if joint.friction is not None:
-                self._own[min(sides := sides_of(joint)), max(sides)] = min(mu, ROUGH)
+                self._own[min(sides := sides_of(joint)), max(sides)] = min(mu, MOST_FRICTION)
 
     def at(self, points: Points) -> Array:
         """Return the friction coefficient at each point."""

@@ -8,8 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.space.points import JointPoints
+from blocksim.engines.solid.between import sides_of
 from blocksim.engines.solid.meeting import Points
 
+SAME = 1e-6
+"""Distance of points that are the same [size]."""
 OPEN = 100.0
 """How much farther away a point of contact counts for its gap, over that gap."""
 
@@ -56,3 +60,30 @@ class Borne(NamedTuple):
         pushes[against[each, nearest]] *= -1.0
         np.add.at(found, nearest, np.einsum("pij,pj->pi", points.axes[nearest], pushes))
         return found
+
+
+def handed(
+    forces: Array, contacts: JointPoints, points: Points, body: NDArray[np.int64]
+) -> Borne:
+    """Return the forces at points of joints, (points, 3), as those of points that are found.
+
+    `body`, (hulls,): Of which body each is part.
+    """
+    assembly = contacts.problem.assembly
+    places, axes = assembly.points / assembly.size, contacts.axes[contacts.joint]
+    pushes = np.einsum("pi,pij->pj", forces, axes)
+    joined = np.array([sides_of(each) for each in assembly.joints]).reshape(-1, 2)
+    joined = joined[contacts.joint]
+    sides = np.stack([body[points.before], body[points.after]], axis=1)
+    ours, theirs = np.sort(sides, axis=1), np.sort(joined, axis=1)
+    borne = Borne.nothing(points)
+    for at, (place, push) in enumerate(zip(places, pushes, strict=True)):
+        # Points of other joints may lie at the same place, of the same blocks, too.
+        near = np.linalg.norm(points.places - place, axis=1) < SAME
+        near &= (ours == theirs[at]).all(axis=1)
+        along = np.where(near, np.abs(points.normals @ axes[at, 0]), 0.0)
+        if near.any():
+            best = int(along.argmax())
+            sign = 1.0 if joined[at, 1] == sides[best, 1] else -1.0
+            borne.forces[best] += sign * points.axes[best] @ push
+    return borne

@@ -10,7 +10,6 @@ changes no velocity.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,20 +18,17 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.blocks.space.points import JointPoints
-from blocksim.engines.base import ROUGH, Quality, Settings
+from blocksim.engines.base import Quality, Settings
 from blocksim.engines.energy import Balance
-from blocksim.engines.solid.between import (
-    DrawnApart,
-    FrictionBetween,
-    body_of,
-    sides_of,
-)
-from blocksim.engines.solid.bodies import Bodies, Place, carried
+from blocksim.engines.solid import MOST_FRICTION
+from blocksim.engines.solid.between import DrawnApart, FrictionBetween, body_of
+from blocksim.engines.solid.bodies import Bodies, Place
 from blocksim.engines.solid.coulomb import solve
 from blocksim.engines.solid.dilation import dilating
 from blocksim.engines.solid.meeting import Points, meet, near
-from blocksim.engines.solid.memory import Borne
+from blocksim.engines.solid.memory import Borne, handed
 from blocksim.engines.solid.path import STEPS
+from blocksim.engines.solid.seen import Seen, gaps_of, seen
 from blocksim.engines.solid.step import Step
 
 COARSE = 1e-5
@@ -53,27 +49,10 @@ DEEP = 1e-6
 """Overlap that is pushed apart at once [size]."""
 PUSHES = 6
 """Most looks at what overlaps, with a push after each but the last."""
-SAME = 1e-6
-"""Distance of points that are the same [size]."""
 MOST = 5e-4
 """Overlap after impacts beyond which the step is halved [size]."""
 NEAR = 1e-3
 """Beyond the way of a step, how near blocks are that are looked at [size]."""
-
-
-class Seen(NamedTuple):
-    """Points of contact as something is asked of them.
-
-    Rows of velocities of both blocks, (points, 3, 12), the blocks, (points, 2), and gaps.
-    """
-
-    rows: Array
-    sides: NDArray[np.int64]
-    gaps: Array
-
-    def along(self, velocities: Array) -> Array:
-        """Return velocities at the points, (points, 3), of scaled ones of the blocks."""
-        return np.matmul(self.rows, velocities[self.sides].reshape(-1, 12, 1))[:, :, 0]
 
 
 class SolidBlocks:
@@ -105,7 +84,8 @@ class SolidBlocks:
         Returns (blocks, 6).
         """
         found = solve(at_rest(self.bodies), self._given)
-        self._begin(found.forces)
+        points = self._points(self._place, 0.0)[0]
+        self._borne = handed(found.forces, self._contacts, points, self._body)
         self._residual = max(self._residual, found.residual)
         rates = found.x.reshape(-1, 6) / self.bodies.root
         rates[:, 3:] = np.einsum("bij,bj->bi", self._place.turns[:-1], rates[:, 3:])
@@ -133,28 +113,6 @@ class SolidBlocks:
             gain=self._balance.gain,
         )
 
-    def _begin(self, forces: Array) -> None:
-        """Begin a motion with the forces at the points of joints, (points, 3)."""
-        contacts, assembly = self._contacts, self.bodies.problem.assembly
-        points, _ = self._points(self._place, 0.0)
-        places, axes = assembly.points / assembly.size, contacts.axes[contacts.joint]
-        pushes = np.einsum("pi,pij->pj", forces, axes)
-        joined = np.array([sides_of(each) for each in assembly.joints]).reshape(-1, 2)[
-            contacts.joint
-        ]
-        sides = np.stack([self._body[points.before], self._body[points.after]], axis=1)
-        ours, theirs = np.sort(sides, axis=1), np.sort(joined, axis=1)
-        self._borne = Borne.nothing(points)
-        for at, (place, push) in enumerate(zip(places, pushes, strict=True)):
-            # Points of other joints may lie at the same place, of the same blocks, too.
-            near = np.linalg.norm(points.places - place, axis=1) < SAME
-            near &= (ours == theirs[at]).all(axis=1)
-            along = np.where(near, np.abs(points.normals @ axes[at, 0]), 0.0)
-            if near.any():
-                best = int(along.argmax())
-                sign = 1.0 if joined[at, 1] == sides[best, 1] else -1.0
-                self._borne.forces[best] += sign * points.axes[best] @ push
-
     def _move(self, step: float) -> None:
         """Go on for a time."""
         left, halvings, nearer = step, 0, 0
@@ -174,7 +132,7 @@ class SolidBlocks:
                     continue
                 self._residual = 0.0
                 self._closing(part)
-                deep = self._overlap()
+                deep = depth(self._points(self._place, 0.0)[0])
             if (self._residual > COARSE or deep > MOST) and halvings < HALVINGS:
                 vars(self).update(before)
                 halvings += 1
@@ -194,10 +152,12 @@ class SolidBlocks:
         velocities, speeding = self._velocities, self._speeding
         gain = step * speeding
         middle = self._place.moved(step / 2 * velocities + step / 8 * gain)
-        points, friction = self._points(middle, step)
+        points, friction, _ = self._points(middle, step)
         gone = self._place.moved(step * velocities + step / 2 * gain)
-        first, last = (self._seen(points, middle, there) for there in (self._place, gone))
-        now = self._seen(points, middle, middle)
+        first, last = (
+            seen(self.bodies, points, middle, there) for there in (self._place, gone)
+        )
+        now = seen(self.bodies, points, middle, middle)
         root = self.bodies.root
         scaled = root * velocities
         rate = first.along(scaled)[:, 0]
@@ -212,7 +172,7 @@ class SolidBlocks:
         if self._residual > COARSE:
             return 0.5
         self._advance(step, 0.5)
-        after = self._gaps(points, middle, self._place)
+        after = gaps_of(self.bodies, points, middle, self._place)
         opened = first.gaps > PASSED
         passes = ~shut & (after < np.where(opened, 0.0, first.gaps) - PASSED)
         share = np.where(opened, first.gaps, 0.0)[passes] / (first.gaps - after)[passes]
@@ -222,9 +182,9 @@ class SolidBlocks:
         """Take a step of first order: what is open may close, but not pass."""
         velocities = self._velocities
         middle = self._place.moved(step / 2 * velocities)
-        points, friction = self._points(middle, step)
-        gaps = self._gaps(points, middle, self._place)
-        now = self._seen(points, middle, middle)
+        points, friction, _ = self._points(middle, step)
+        gaps = gaps_of(self.bodies, points, middle, self._place)
+        now = seen(self.bodies, points, middle, middle)
         drift = now.along(self.bodies.root * velocities)
         drift[:, 0] += np.maximum(gaps, 0.0) / step
         every = np.ones(len(points.gaps), dtype=bool)
@@ -263,8 +223,11 @@ class SolidBlocks:
         self._residual = float(np.maximum(self._residual, found.residual))
         self._speeding = found.x.reshape(-1, 6) / bodies.root
 
-    def _points(self, place: Place, step: float) -> tuple[Points, Array]:
-        """Find the points of contact about a place, gaps less those drawn, and the friction."""
+    def _points(self, place: Place, step: float) -> tuple[Points, Array, float]:
+        """Find the points of contact about a place, the friction there, and the overlap.
+
+        Gaps are less those drawn, and edges are rounded. The overlap is that of sharp edges.
+        """
         hulls = self.bodies.hulls.placed(*place)
         speed = np.linalg.norm(self._velocities[:, :3], axis=1)
         speed += self.bodies.reach * np.linalg.norm(self._velocities[:, 3:], axis=1)
@@ -273,80 +236,42 @@ class SolidBlocks:
         pairs = near(hulls, way)
         points = meet(hulls, pairs, way[pairs].sum(axis=1))
         drawn, rounded = self._drawn.at(points)
-        gaps = points.gaps - drawn + rounded
+        sharp = points.gaps - drawn
+        gaps = sharp + rounded
         near_by = gaps <= way[points.before] + way[points.after]
         points = points._replace(gaps=gaps).at(near_by)
-        return points, self._friction.at(points)
-
-    def _gaps(self, points: Points, found: Place, there: Place) -> Array:
-        """Return gaps of points elsewhere than where they were found."""
-        axes, places = self._carried(points, found, there)
-        return self._gaps_of(points, found, there, axes[:, 0], places)
-
-    def _gaps_of(
-        self, points: Points, found: Place, there: Place, normals: Array, places: Array
-    ) -> Array:
-        """Return how far places are from the planes of points that have moved."""
-        feet = points.places - points.gaps[:, None] * points.normals
-        feet = carried(feet, self.bodies.hulls.owner[points.before], found, there)
-        return np.einsum("pi,pi->p", places - feet, normals)
-
-    def _carried(self, points: Points, found: Place, there: Place) -> tuple[Array, Array]:
-        """Return axes of points, and their places, elsewhere than where they were found.
-
-        A point moves with the block after it, its plane with the one before.
-        """
-        owner = self.bodies.hulls.owner
-        before, after = owner[points.before], owner[points.after]
-        turned = there.turns[before] @ found.turns[before].transpose(0, 2, 1)
-        axes = np.matmul(points.axes, turned.transpose(0, 2, 1))
-        return axes, carried(points.places, after, found, there)
-
-    def _seen(self, points: Points, found: Place, there: Place) -> Seen:
-        """Return rows and gaps of points elsewhere than where they were found."""
-        owner = self.bodies.hulls.owner
-        axes, places = self._carried(points, found, there)
-        gaps = self._gaps_of(points, found, there, axes[:, 0], places)
-        sides = np.stack([owner[points.before], owner[points.after]], axis=1)
-        return Seen(self.bodies.rows(axes, places, sides, there), sides, gaps)
-
-    def _overlap(self) -> float:
-        """Return how deep blocks are within each other, deeper than edges are rounded."""
-        points, _ = self._points(self._place, 0.0)
-        return -float(points.gaps.min(initial=0.0))
-
-    def _overlap_as_drawn(self) -> float:
-        """Return how deep blocks are within each other, with sharp edges."""
-        hulls = self.bodies.hulls.placed(*self._place)
-        pairs = near(hulls, np.zeros(len(hulls.owner)))
-        points = meet(hulls, pairs, np.zeros(len(pairs)))
-        return -float((points.gaps - self._drawn.at(points)[0]).min(initial=0.0))
+        return points, self._friction.at(points), -float(sharp.min(initial=0.0))
 
     def _push_apart(self) -> None:
         """Move blocks that overlap apart, as little as contact allows.
 
         Again where that pushed them into others; the place with the least overlap is kept.
         """
-        least, place = math.inf, self._place
+        least, place, overlap = math.inf, self._place, 0.0
         for _ in range(PUSHES):
-            points, friction = self._points(self._place, 0.0)
-            seen = self._seen(points, self._place, self._place)
-            deep = -float(seen.gaps.min(initial=0.0))
+            points, friction, sharp = self._points(self._place, 0.0)
+            deep = depth(points)
             if deep < least:
-                least, place = deep, self._place
+                least, place, overlap = deep, self._place, sharp
             if deep <= DEEP:
                 break
-            drift = np.zeros((len(seen.gaps), 3))
-            drift[:, 0] = seen.gaps / deep
+            now = seen(self.bodies, points, self._place, self._place)
+            drift = np.zeros((len(points.gaps), 3))
+            drift[:, 0] = points.gaps / deep
             still = np.zeros_like(self._velocities)
-            asked = self.bodies.asked(seen.rows, seen.sides, drift, still, friction)
+            asked = self.bodies.asked(now.rows, now.sides, drift, still, friction)
             forces = dilating(asked)
             if forces is None:
                 break
             way = deep * asked.pushed_by(forces).reshape(-1, 6) / self.bodies.root
             self._place = self._place.moved(way)
         self._place = place
-        self._penetration = max(self._penetration, self._overlap_as_drawn())
+        self._penetration = max(self._penetration, overlap)
+
+
+def depth(points: Points) -> float:
+    """Return how deep blocks are within each other, deeper than edges are rounded."""
+    return -float(points.gaps.min(initial=0.0))
 
 
 def at_rest(bodies: Bodies) -> Step:
@@ -355,6 +280,6 @@ def at_rest(bodies: Bodies) -> Step:
     places = assembly.points / assembly.size
     axes, sides = contacts.axes[contacts.joint], assembly.sides.T[contacts.joint]
     rows = bodies.rows(axes, places, sides, bodies.built)
-    friction = np.minimum(contacts.friction, ROUGH)
+    friction = np.minimum(contacts.friction, MOST_FRICTION)
     pull = bodies.pull(bodies.built)
     return bodies.asked(rows, sides, np.zeros((len(places), 3)), pull, friction)
