@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from blocksim.ask.ends import Within
@@ -186,11 +187,17 @@ def proofs_beside(
     """
     for sure in SURE:
         ends = value * (1 - sure), value * (1 + sure)
-        found = [equilibrium(at(end)).proof for end in (ends if rises else ends[::-1])]
+        found = [_rest(at, end, True).proof for end in (ends if rises else ends[::-1])]
         proofs = tuple(each for each in found if each is not None)
         if [each.claim for each in proofs] == ["collapses", "stands"]:
             return proofs
     return ()
+
+
+@lru_cache(maxsize=2 * len(SURE))
+def _rest(at: Callable[[float], Problem], value: float, reduce: bool) -> Any:
+    """Return the equilibrium at a value, which is asked for its verdict and for its proof."""
+    return equilibrium(at(value), reduce=reduce)
 
 
 def by_programmes(
@@ -219,7 +226,7 @@ def by_programmes(
         falls, stands = ends if rises else ends[::-1]
         runs += 2
         if spatial:
-            static = [equilibrium(family.at(end), reduce=reduce) for end in (falls, stands)]
+            static = [_rest(family.at, end, reduce) for end in (falls, stands)]
             told, blocks = [each.exists for each in static], fewer(family.problem, static[1])
         else:
             told = [exists(family.at(end)) for end in (falls, stands)]

@@ -178,7 +178,7 @@ def score(
     """Hold what an engine said of these scenes to the truth."""
     before = None if expect is None else read_score(expect)
     asked = questions()
-    head, said = read_answers(answers, {name: each.scene for name, each in asked.items()})
+    head, said = read_answers(answers, asked)
     found = scored(head, said, asked)
     record = found.record()
     paths = [] if out is None else write_score(found, out)
@@ -204,7 +204,7 @@ def replay(
     out = out or Path()
     require(out.suffix == ".npz", "--out", str(out), "a file that ends in .npz")
     asked = questions()
-    head, said = read_answers(answers, {name: each.scene for name, each in asked.items()})
+    head, said = read_answers(answers, asked)
     require(scene in said, "SCENE", scene, f"one that is answered{perhaps(scene, said)}")
     question = asked[scene]
     if not isinstance(question, Question):

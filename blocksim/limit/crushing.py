@@ -80,6 +80,7 @@ class Crushing:
         self._unit = np.repeat(cones.unit, 2)
         self._ends = ends = cones.pressing
         self._both = (ends[0::2] + ends[1::2])[np.repeat(np.arange(crushing.size), 2)]
+        self._kept = dict[tuple[bool, int, bool], tuple[Any, Any, Array]]()
 
     def most(self, column: Any, right: Array) -> tuple[Optimum, Array]:
         """Make the factor on a column as large as balance, friction and strength allow.
@@ -145,21 +146,12 @@ class Crushing:
         self, cost: Array, column: Any, right: Array, soil: Any, *, sought: bool = False
     ) -> tuple[Optimum, Array]:
         """Find the least cost of parts, a factor on a column, and a share that is sought."""
-        cones, count, loads, rows = self._cones, cost.size, int(soil.shape[1]), right.size
-        beside = [] if column is None else [column]
-        beside += [sparse.csc_array((rows, 1))] if sought else []
-        balance: Any = sparse.hstack([cones.balance, *beside, soil], format="csc")
-        shares = np.arange(count, count + loads)
-        above = np.concatenate([np.flatnonzero(cones.bounded), shares])
-        pressing = _bounds(above, -1.0, count + loads)
-        law, bound = self._law(count, sought=sought)
-        law = sparse.hstack([law, sparse.csr_array((law.shape[0], loads))])
-        matrix = sparse.csc_matrix(
-            sparse.vstack([balance, pressing, _bounds(shares, 1.0, count + loads), law])
-        )
+        count, loads, rows = cost.size, int(soil.shape[1]), right.size
+        matrix, bound = self._matrix(column, soil, sought=sought)
         ends: list[Cone] = [("second-order", 3)] * self._full.size
         cost = np.append(cost, np.zeros(loads))
-        every = np.concatenate([right, np.zeros(above.size), np.ones(loads), bound])
+        bounded = matrix.shape[0] - rows - bound.size
+        every = np.concatenate([right, np.zeros(bounded - loads), np.ones(loads), bound])
         # What defeats the solver in one scale it solves in the other.
         for scaled_first in (True, False):
             found = solved_cones(
@@ -167,7 +159,7 @@ class Crushing:
                 cost,
                 matrix,
                 every,
-                [("zero", rows), ("nonnegative", above.size + loads), *ends],
+                [("zero", rows), ("nonnegative", bounded), *ends],
                 finest=FINEST,
                 scaled=scaled_first,
             )
@@ -206,7 +198,45 @@ class Crushing:
         found, _ = self._solve(cost, column, right, self._soil, sought=True)
         return not found.exists or found.least > 1 + FAITHFUL
 
-    def _law(self, count: int, *, sought: bool) -> tuple[Any, Array]:
+    def _matrix(self, column: Any, soil: Any, *, sought: bool) -> tuple[Any, Array]:
+        """Return the rows of balance, of bounds and of the law, and the right side of the last.
+
+        But for the column they are the same again and again.
+        """
+        key = column is None, int(soil.shape[1]), sought
+        if key not in self._kept:
+            self._kept[key] = self._rows(soil, int(column is not None), int(sought))
+        first, last, bound = self._kept[key]
+        if column is None:
+            return sparse.hstack([first, last], format="csc"), bound
+        entries = column.data, column.indices, column.indptr
+        middle = sparse.csc_array(entries, shape=(first.shape[0], 1))
+        return sparse.hstack([first, middle, last], format="csc"), bound
+
+    def _rows(self, soil: Any, beside: int, sought: int) -> tuple[Any, Any, Array]:
+        """Return the columns before and after that of `_matrix`, and the right side."""
+        cones, loads = self._cones, int(soil.shape[1])
+        law, bound = self._law()
+        count = cones.count + beside + sought
+        shares = np.arange(count, count + loads)
+        above = np.concatenate([np.flatnonzero(cones.bounded), shares])
+        none = sparse.csc_array((cones.balance.shape[0], beside + sought))
+        strength = np.zeros((bound.size, beside + sought + loads))
+        if sought:
+            strength[:, beside] = -bound
+        rows = sparse.vstack(
+            [
+                sparse.hstack([cones.balance, none, soil]),
+                _bounds(above, -1.0, count + loads),
+                _bounds(shares, 1.0, count + loads),
+                sparse.hstack([law, sparse.csr_array(strength)]),
+            ],
+            format="csc",
+        )
+        first, last = rows[:, : cones.count], rows[:, cones.count + beside :]
+        return first, last, (1 - sought) * bound
+
+    def _law(self) -> tuple[Any, Array]:
         """Return rows and right sides of n^2 <= 2 P m, three of each end.
 
         Of two numbers u and v and a third w it is w^2 <= u v: (u + v, u - v, 2 w) lies in a
@@ -217,13 +247,8 @@ class Crushing:
         w: Any = sparse.diags_array(2 / self._unit) @ self._both
         size = self._full.size
         rows = sparse.vstack([u, u, w], format="csr")
-        v = np.concatenate([even, -even, np.zeros(size)])
         order = np.arange(3 * size).reshape(3, size).T.ravel()
-        more = np.zeros((3 * size, count - self._cones.count))
-        if sought:
-            more[:, -1] = v
-        rows = sparse.hstack([rows, sparse.csr_array(more)], format="csr")
-        return -rows[order], (0.0 if sought else 1.0) * v[order]
+        return -rows[order], np.concatenate([even, -even, np.zeros(size)])[order]
 
 
 def strength_needed(problem: Problem) -> Needed | None:

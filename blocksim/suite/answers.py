@@ -18,6 +18,7 @@ from blocksim.engines.base import Settings
 from blocksim.simulation.recording import Recording
 from blocksim.suite.families import Question
 from blocksim.suite.scene import PLANAR, SPATIAL, Bodies, Scene
+from blocksim.suite.timed import Motion
 
 FORMAT = "blocksim answers 1"
 LARGEST = 1 << 28
@@ -55,11 +56,13 @@ class Answer:
     seconds: float
 
 
-def read_answers(path: AnyPath, scenes: Mapping[str, Scene]) -> tuple[Head, dict[str, Answer]]:
+def read_answers(
+    path: AnyPath, asked: Mapping[str, Question | Motion]
+) -> tuple[Head, dict[str, Answer]]:
     """Read a file of answers.
 
     `path`: Of JSON lines: who answers, then a line a scene.
-    `scenes`: Those that may be answered.
+    `asked`: The scenes that may be answered, by name.
     """
     said, found = str(path), dict[str, Answer]()
     with opened(path, "answers", "a file of JSON lines", LARGEST) as file:
@@ -71,12 +74,12 @@ def read_answers(path: AnyPath, scenes: Mapping[str, Scene]) -> tuple[Head, dict
                 where = f"line {number}"
                 name = table.get("scene", MISSING)
                 allowed = "the name of a scene" + (
-                    perhaps(name, scenes) if isinstance(name, str) else ""
+                    perhaps(name, asked) if isinstance(name, str) else ""
                 )
-                known = isinstance(name, str) and name in scenes
+                known = isinstance(name, str) and name in asked
                 require(known, f"{where}: scene", name, allowed)
                 require(name not in found, f"{where}: scene", name, "answered once")
-                found[name] = _answer(where, table, scenes[name])
+                found[name] = _answer(where, table, asked[name])
             require(bool(found), "answers", MISSING, "a line a scene, after the first")
         except InputError as error:
             raise InputError(error.field, error.value, error.allowed, where=said) from None
@@ -121,7 +124,7 @@ def _require_keys(where: str, table: dict[str, Any], known: tuple[str, ...]) -> 
         require(key in known, f"{where}: {key}", table[key], f"left out: no such key{near}")
 
 
-def _answer(where: str, table: dict[str, Any], scene: Scene) -> Answer:
+def _answer(where: str, table: dict[str, Any], asked: Question | Motion) -> Answer:
     """Check what was said of a scene."""
     _require_keys(where, table, KEYS)
     seconds = table.get("seconds", MISSING)
@@ -133,12 +136,12 @@ def _answer(where: str, table: dict[str, Any], scene: Scene) -> Answer:
         raise InputError(f"{where}: verdict", value, "given, or poses, one of the two")
     if verdict is not None:
         # A motion is told by poses.
-        words = get_args(Said) if scene.level is not None else ("open",)
+        words = get_args(Said) if isinstance(asked, Question) else ("open",)
         require(verdict in words, f"{where}: verdict", verdict, f"one of {', '.join(words)}")
     return Answer(
-        scene=scene.name,
+        scene=asked.name,
         verdict=verdict,
-        poses=None if poses is None else _poses(f"{where}: poses", poses, scene),
+        poses=None if poses is None else _poses(f"{where}: poses", poses, asked.scene),
         seconds=float(seconds),
     )
 

@@ -163,14 +163,13 @@ def scored(
     return Score(head=head, rows=tuple(rows))
 
 
-def _sort(asked: Question | Motion) -> tuple[int, bool]:
-    return asked.scene.dimensions, isinstance(asked, Motion)
+def _sort(asked: Question | Motion) -> tuple[bool, bool]:
+    return isinstance(asked, Question) and asked.family.spatial, isinstance(asked, Motion)
 
 
 def _row(asked: Question | Motion, answer: Answer | None) -> Row:
-    scene = asked.scene
-    stands = None if isinstance(asked, Motion) else asked.stands
-    known: dict[str, Any] = {"scene": scene.name, "group": scene.group, "level": scene.level}
+    level, stands = (asked.level, asked.stands) if isinstance(asked, Question) else (None, None)
+    known: dict[str, Any] = {"scene": asked.name, "group": asked.group, "level": level}
     if answer is None or answer.verdict == "open":
         seconds = 0.0 if answer is None else answer.seconds
         return Row(**known, answer="open", stands=stands, seconds=seconds)
@@ -179,6 +178,7 @@ def _row(asked: Question | Motion, answer: Answer | None) -> Row:
     if poses is None:
         right = (answer.verdict == "stands") == stands
         return Row(**known, answer="right" if right else "false")
+    scene = asked.scene
     bodies = Bodies(scene)
     if isinstance(asked, Motion):
         off = bodies.corners(poses) - bodies.corners(asked.poses)
