@@ -154,9 +154,9 @@ PULSE = {"shape": "half-sine", "amplitude_g": 0.4, "duration_s": 0.3}
 
 
 def test_file_and_options_ask_the_same(tmp_path: Path) -> None:
-    asked = inside("check", written(tmp_path, shake=PULSE), "--method", "pymunk", "--json")
+    asked = inside("check", written(tmp_path, shake=PULSE), "--method", "direct", "--json")
     options = ["--shake", "half-sine", "--amplitude", "0.4", "--duration", "0.3"]
-    given = inside("check", written(tmp_path), *options, "--method", "pymunk", "--json")
+    given = inside("check", written(tmp_path), *options, "--method", "direct", "--json")
     both = [json.loads(each.stdout) for each in (asked, given)]
     assert both[0]["state_hash"] == both[1]["state_hash"]
     assert both[0]["problem"]["shake"] == PULSE
@@ -167,7 +167,7 @@ def test_file_and_options_ask_the_same(tmp_path: Path) -> None:
     assert (asked.returncode, both[0]["verdict"]) == (0, "stands")
     assert both[0]["rest"] is None
     stronger = inside(
-        "check", written(tmp_path, shake=PULSE), "--amplitude", "1.5", "--method", "pymunk"
+        "check", written(tmp_path, shake=PULSE), "--amplitude", "1.5", "--method", "direct"
     )
     assert stronger.returncode == 1
     assert "ground shakes: half sine of 1.5 g for 0.3 s" in stronger.stdout
@@ -251,17 +251,6 @@ def pulse(duration: float) -> Any:
     return on_record(structure_of(scenes(NAME)[0]), np.array([0, duration]), np.ones(2)).shaking
 
 
-def test_the_share_that_falls_is_that_of_pulses_long_enough() -> None:
-    problem = replace(structure_of(scenes(NAME)[0]), shaking=None)
-    shares = (0.9, 1.05)
-    records = {f"{share:g}": pulse(share * LEAST) for share in shares}
-    # Below 0.25 g nothing starts to rock.
-    found = fragility(problem, records, [0.2, 0.5], method="direct")
-    assert found.records == ("0.9", "1.05")
-    verdicts = [[each.value for each in row] for row in found.verdicts]
-    assert verdicts == [["stands", "stands"], ["stands", "collapses"]]
-
-
 def test_a_curve_and_a_table_are_written(tmp_path: Path) -> None:
     record, table, curve = (tmp_path / name for name in ("a.csv", "out.csv", "out.svg"))
     record.write_text("time_s,acceleration_g\n0,1\n0.5,1\n")
@@ -283,22 +272,27 @@ def test_a_curve_and_a_table_are_written(tmp_path: Path) -> None:
     assert said["verdicts"] == {str(record): ["stands", "collapses"]}
 
 
-def test_a_folder_keeps_answers_and_processes_share_the_work(tmp_path: Path) -> None:
-    """Both ends of what is known are the same; the second run asks about one amplitude only."""
+def test_the_share_that_falls_is_that_of_pulses_long_enough_and_a_folder_keeps_it(
+    tmp_path: Path,
+) -> None:
+    """Below 0.25 g nothing starts to rock. What the folder has is not asked again."""
     problem = replace(structure_of(scenes(NAME)[0]), shaking=None)
-    records = {"long": pulse(1.05 * LEAST)}
-    first = fragility(problem, records, [0.2], method="direct", folder=tmp_path)
+    records = {f"{share:g}": pulse(share * LEAST) for share in (0.9, 1.05)}
+    asked = {"method": "direct", "folder": tmp_path}
+    fragility(problem, {"1.05": records["1.05"]}, [0.2], **asked)
     (row,) = read_rows(tmp_path)
     assert (row["verdict"], row["amplitude_g"]) == ("stands", 0.2)
-    both = fragility(problem, records, [0.2, 0.5], method="direct", folder=tmp_path, workers=2)
-    rows = sorted(read_rows(tmp_path), key=lambda each: float(str(each["amplitude_g"])))
-    assert rows[0] == row
-    assert [each["verdict"] for each in rows] == ["stands", "collapses"]
-    assert both.verdicts[0][:1] == first.verdicts[0]
+    found = fragility(problem, records, [0.2, 0.5], **asked, workers=2)
+    assert found.records == ("0.9", "1.05")
+    verdicts = [[each.value for each in row] for row in found.verdicts]
+    assert verdicts == [["stands", "stands"], ["stands", "collapses"]]
+    rows = list(read_rows(tmp_path))
+    assert len(rows) == 4
+    assert row in rows
     # Other settings are another question.
     finer = {"accuracy": 1e-4}
-    fragility(problem, records, [0.2], method="direct", folder=tmp_path, settings=finer)
-    assert len(list(read_rows(tmp_path))) == 3
+    fragility(problem, {"1.05": records["1.05"]}, [0.2], **asked, settings=finer)
+    assert len(list(read_rows(tmp_path))) == 5
 
 
 def test_amplitudes_have_to_grow() -> None:

@@ -481,7 +481,7 @@ def test_what_fell_stands_nowhere_beyond() -> None:
     assert bracket(flat, over="spread", method="limit").limit == pytest.approx(falls, rel=1e-6)
     for share in (0.9, 0.9999):
         assert check(spread_by(flat, share * falls)).verdict is Verdict.STANDS
-    for share in (1.0001, 1.001, 1.3, 2.0):
+    for share in (1.0001, 1.3):
         answer = check(spread_by(flat, share * falls))
         assert answer.verdict is Verdict.COLLAPSES
         assert answer.proved
@@ -506,7 +506,7 @@ def test_what_is_pushed_falls_where_it_falls_first(over: str) -> None:
         assert inside("check", *asked, *mu, f"--{over}", value).returncode == code
 
 
-@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize("way", [1, pytest.param(-1, marks=pytest.mark.long)])
 def test_hinges_get_into_line_where_forces_are_not_told(way: int) -> None:
     """Nearest to where they do, forces are 1e8 weights; the span there is a closed form."""
     left, right, thickness = 23.179528219390512, 37.35109487916007, 1.1150774474915741

@@ -399,6 +399,7 @@ def test_a_tower_tilts_least_far_towards_its_shorter_side(tmp_path: Path) -> Non
         design_of(tmp_path, 'kind = "column"\nmu = 0.5\nazimuth_deg = 10')
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_a_kind_in_space_is_one_like_any_other(tmp_path: Path) -> None:
     """Two boxes stand up to half a length of offset, by statics of the upper one alone."""
     text = 'kind = "tower"\nblocks = 2\nturn_deg = 0\nmu = 0.6\nmethod = ["limit", "direct"]\n'

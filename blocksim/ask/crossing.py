@@ -21,6 +21,7 @@ import numpy as np
 from blocksim.ask.worst import Place, WorstPlace
 from blocksim.blocks.acting import Load
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.patch import Profile
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import profile_of
 from blocksim.blocks.vehicles import Vehicle
@@ -82,11 +83,11 @@ class Crossing(Shown):
 
         None where the structure falls under it.
         """
-        joint = crown(self.problem)
+        joint, profile = crown(self.problem), profile_of(self.problem.assembly)
         unit = self.problem.unit_force
         found: list[tuple[float, float] | None] = []
         for place in self.places:
-            live = loads_at(self.problem, place.live)
+            live = loads_at(self.problem, profile, place.live)
             under = mobilised(replace(self.problem, live=live, load=1.0))
             ends = (
                 None if joint is None or place.load_factor < 1 else thrust_range(under, joint)
@@ -144,8 +145,9 @@ def crossing(problem: Problem, vehicle: Vehicle, *, progress: Progress = silent)
     most = (1 - ROUNDING) * max(1 / place.load_factor for place in places)
     # Of two places that mirror each other the first, whatever is rounded.
     worst = next(place for place in places if 1 / place.load_factor >= most)
+    profile = profile_of(problem.assembly)
     return Crossing(
-        problem=replace(problem, live=loads_at(problem, worst.live), load=1.0),
+        problem=replace(problem, live=loads_at(problem, profile, worst.live), load=1.0),
         vehicle=vehicle,
         worst=worst,
         low=1 / highest if highest else math.inf,
@@ -154,9 +156,9 @@ def crossing(problem: Problem, vehicle: Vehicle, *, progress: Progress = silent)
     )
 
 
-def loads_at(problem: Problem, live: Array) -> tuple[Load, ...]:
+def loads_at(problem: Problem, profile: Profile, live: Array) -> tuple[Load, ...]:
     """Return what a vehicle does to the blocks as loads on what lies uppermost."""
-    assembly, profile = problem.assembly, profile_of(problem.assembly)
+    assembly = problem.assembly
     loads: list[Load] = []
     for index in np.flatnonzero(live[:, 1]).tolist():
         _, force, moment = live[index].tolist()

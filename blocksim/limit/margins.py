@@ -18,7 +18,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import Unsolved
 from blocksim.limit.bearing import Bearing
-from blocksim.limit.cones import Cones
+from blocksim.limit.cones import Cones, carried_weights
 from blocksim.limit.crushing import Crushing
 from blocksim.limit.linear import NONE, LinearProgramme
 from blocksim.limit.programme import extreme, most_common
@@ -207,6 +207,7 @@ class _Search:
     ) -> None:
         self._problem, self._width, self._friction = problem, width, friction
         self._pull, self._solver = problem.applied_forces(), solver
+        self._weights = carried_weights(problem)
         unbounded = np.isinf(problem.friction) if not width else np.zeros(1, dtype=bool)
         self.bounded = not unbounded.any()
         self._unit = np.where(unbounded, 1.0, problem.friction)
@@ -216,7 +217,8 @@ class _Search:
         if self._friction:
             # Unbounded friction stays so, however little of it is left.
             mu = np.where(np.isinf(mu), mu, share * np.where(np.isinf(mu), 0.0, mu))
-        return Cones(self._problem, friction=mu, width=share if self._width else 1.0)
+        width = share if self._width else 1.0
+        return Cones(self._problem, friction=mu, width=width, weights=self._weights)
 
     def margin(self, share: float) -> tuple[float, float]:
         """Return the margin of `Equilibrium` at a share, and its derivative."""

@@ -190,7 +190,7 @@ def test_the_map_by_keyboard(page: playwright.Page) -> None:
     assert page.is_checked("#unbounded")
 
 
-@pytest.mark.parametrize("half", [6, pytest.param(24, marks=pytest.mark.long)])
+@pytest.mark.parametrize("half", [4, pytest.param(24, marks=pytest.mark.long)])
 def test_never_says_nonsense(page: playwright.Page, half: int) -> None:
     """Anywhere in the ranges, both weights: no error, no NaN, and the verdict of theory."""
     random = np.random.default_rng(7)
@@ -490,7 +490,8 @@ def test_texts_have_contrast(page: playwright.Page) -> None:
     set_arch(page, eta=0.28)
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
-        found = [(shown_contrast(page, *tones), words) for *tones, words in page.evaluate(INKS)]
+        texts = {tuple(tones): words for *tones, words in page.evaluate(INKS)}
+        found = [(shown_contrast(page, *tones), words) for tones, words in texts.items()]
         assert min(found)[0] >= 4.5, min(found)
 
 
