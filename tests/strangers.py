@@ -9,8 +9,9 @@ import io
 import json
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -549,41 +550,47 @@ ATTACKS = {
 }  # fmt: skip
 
 
-def good() -> dict[str, Attack]:
-    """Return the files that are changed and spoilt, as they are: each must be read."""
+def good() -> dict[str, Callable[[], Attack]]:
+    """Return the files that are changed and spoilt, as they are: each must be read.
+
+    Each is made when it is asked for: what takes long is not, as tests are collected.
+    """
     mu = ("--mu", "0.7")
     arch = ("--alpha", "90", *mu, "--voussoirs", "9", "--eta", "0.2")
     trees = {"structure": STRUCTURE, "given": GIVEN, "shaken": SHAKEN, "kind": BY_KIND}
     trees |= {"wall": WALL, "peer": PEER, "peer of before": _peer_of_before()}
     made = {
-        name: Attack(
-            {"a.json": _json(tree)}, ("check", "a.json", *mu * name.startswith("peer"))
+        name: partial(
+            Attack, {"a.json": _json(tree)}, ("check", "a.json", *mu * name.startswith("peer"))
         )
         for name, tree in trees.items()
     }
     for name, tree in {"scenario": SCENARIO, "measured": MEASURED}.items():
-        made[name] = Attack({"a.toml": toml(tree)}, ("check", "a.toml"))
+        made[name] = partial(Attack, {"a.toml": toml(tree)}, ("check", "a.toml"))
     for name, tree in {"design": DESIGN, "drawn design": DRAWN_DESIGN}.items():
         words = ("sweep", "a.toml", "--out", "o", "--workers", "1")
-        made[name] = Attack({"a.toml": toml(tree)}, words)
-    made["solid"] = Attack({"a.json": _json(SOLID)}, ("check", "a.json"))
-    made["proof"] = Attack({"a.json": _proof()}, ("verify", "a.json"))
+        made[name] = partial(Attack, {"a.toml": toml(tree)}, words)
+    made["solid"] = partial(Attack, {"a.json": _json(SOLID)}, ("check", "a.json"))
     files = {"a.json": _json(STRUCTURE), "a.toml": toml(CASES)}
-    made["cases"] = Attack(files, ("check", "a.json", "--cases", "a.toml"))
+    made["cases"] = partial(Attack, files, ("check", "a.json", "--cases", "a.toml"))
     for name, text in _meshes().items():
         # Where bodies have no names, none is a support.
         asked = ("check", name) if name[-3:] in {"obj", "glb"} else _converted(name)
-        made[name] = Attack({name: text}, (*asked, *mu, "--unit", "m"))
+        made[name] = partial(Attack, {name: text}, (*asked, *mu, "--unit", "m"))
     for name, text in {"a.svg": SVG, "a.dxf": _dxf(), "plain.dxf": _plain_dxf()}.items():
-        made[name] = Attack({name: text}, ("check", name, *mu))
-    made["pipe"] = Attack({"stdin": _json(GIVEN) + b"\n" + _json(SOLID)}, ("check", "-"))
-    shaken = ("check", *arch, "--shake", "a.csv")
-    filmed = ("render", "a.npz", "--out", "o.svg")
+        made[name] = partial(Attack, {name: text}, ("check", name, *mu))
+    made["pipe"] = partial(
+        Attack, {"stdin": _json(GIVEN) + b"\n" + _json(SOLID)}, ("check", "-")
+    )
+    made["ground"] = partial(Attack, {"a.csv": CSV}, ("check", *arch, "--shake", "a.csv"))
     coloured = ("map", "--out", "o.html", "--results", "a.json")
+    made["results"] = partial(Attack, {"a.json": _json(RESULTS)}, coloured)
+    filmed = ("render", "a.npz", "--out", "o.svg")
     return {
         **made,
-        "ground": Attack({"a.csv": CSV}, shaken),
-        "recording": Attack({"a.npz": packed(*_recording())}, filmed),
-        "recording in space": Attack({"a.npz": packed(*_recording(in_space=True))}, filmed),
-        "results": Attack({"a.json": _json(RESULTS)}, coloured),
+        "proof": lambda: Attack({"a.json": _proof()}, ("verify", "a.json")),
+        "recording": lambda: Attack({"a.npz": packed(*_recording())}, filmed),
+        "recording in space": lambda: Attack(
+            {"a.npz": packed(*_recording(in_space=True))}, filmed
+        ),
     }

@@ -61,7 +61,7 @@ def test_what_broke_something_once(name: str, nursery: Nursery, tmp_path: Path) 
 @pytest.mark.parametrize("name", good())
 def test_what_is_spoilt_was_good(name: str, nursery: Nursery, tmp_path: Path) -> None:
     """Of a file that is refused as it is, nothing beyond that would ever be tried."""
-    found, ended = faults(nursery, good()[name], tmp_path / "run")
+    found, ended = faults(nursery, good()[name](), tmp_path / "run")
     assert not found
     assert ended.code in {0, 1, 3}, ended
 

@@ -1,6 +1,5 @@
 """Lines of answers in a pipe: none is longer than 80 characters, and none says less."""
 
-import re
 import shlex
 import sys
 from pathlib import Path
@@ -8,6 +7,7 @@ from pathlib import Path
 import pytest
 from running import inside
 
+ROOT = Path(__file__).parent.parent
 WIDEST = 80
 EVERY = [
     "check {}",
@@ -23,7 +23,7 @@ OTHERS = [
     "bracket ferris_tinloi_3 --over load", "bracket portal --mu 0.7 --over lean",
     "check --span 8 --rise 3 --thickness 0.45 --voussoirs 31 --mu 0.7 --unit-weight 22 "
     "--fill 0.5 --point-load 2 50 --fill-friction-angle 30 --fill-pressure active",
-    "bracket --span 8 --rise 3 --thickness 0.45 --voussoirs 31 --mu 0.6 --fill 0.5 "
+    "bracket --span 8 --rise 3 --thickness 0.45 --voussoirs 9 --mu 0.6 --fill 0.5 "
     "--vehicle 10@0,10@1.2 --along road",
 ]  # fmt: skip
 
@@ -45,7 +45,7 @@ def test_no_line_of_a_command_is_too_long(asked: str, tmp_path: Path) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize(
-    "name", re.findall(r"^(\w+) {2,}\d", inside("scenarios").stdout, re.MULTILINE)
+    "name", [path.stem for path in sorted((ROOT / "scenarios" / "structures").glob("*.toml"))]
 )
 def test_no_line_about_a_shipped_structure_is_too_long(name: str, tmp_path: Path) -> None:
     lines = [line for each in EVERY for line in told(each.format(name), tmp_path).splitlines()]

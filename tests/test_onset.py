@@ -250,15 +250,21 @@ def test_settings_beyond_those_measured_are_named(
     assert word in seen.reason
 
 
+SLABS = [
+    Wall(length=13.576, courses=5, block_length=1.9394, block_height=1.5415),
+    Wall(length=2.2006, courses=5, block_length=0.4396, block_height=0.3501),
+    Wall(length=23.6849, courses=3, block_length=7.8949, block_height=2.3829),
+]
+
+
 @pytest.mark.parametrize(
-    "wall",
+    ("wall", "friction"),
     [
-        Wall(length=13.576, courses=5, block_length=1.9394, block_height=1.5415),
-        Wall(length=2.2006, courses=5, block_length=0.4396, block_height=0.3501),
-        Wall(length=23.6849, courses=3, block_length=7.8949, block_height=2.3829),
+        pytest.param(wall, friction, marks=[pytest.mark.long] if (at + odd) % 2 else [])
+        for at, wall in enumerate(SLABS)
+        for odd, friction in enumerate((0.6375, 0.3538))
     ],
 )
-@pytest.mark.parametrize("friction", [0.3538, 0.6375])
 def test_a_wall_that_ends_in_slabs_of_a_millimetre_can_rest(
     wall: Wall, friction: float
 ) -> None:

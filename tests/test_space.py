@@ -471,7 +471,9 @@ def test_a_column_that_leans_falls_where_it_would_turn_over_its_edge(lean: float
             assert inside(*asked.split(), *acts.split()).stdout.startswith(verdict), acts
 
 
-@pytest.mark.parametrize("azimuth", [0, 90, -143])
+@pytest.mark.parametrize(
+    "azimuth", [*(pytest.param(each, marks=pytest.mark.long) for each in (0, 90)), -143]
+)
 @pytest.mark.parametrize("structure", ["tower", "skew-arch"])
 def test_a_push_is_borne_up_to_the_tangent_of_the_tilt(structure: str, azimuth: int) -> None:
     """Gravity and a level push of all blocks are gravity on a tilted table, but stronger."""
@@ -488,7 +490,7 @@ def test_a_push_is_borne_up_to_the_tangent_of_the_tilt(structure: str, azimuth: 
         assert inside(*map(str, asked), str(share * push)).returncode == code
 
 
-@pytest.mark.parametrize("tilt", [0.0, -8.0])
+@pytest.mark.parametrize("tilt", [pytest.param(0.0, marks=pytest.mark.long), -8.0])
 def test_a_lean_is_asked_in_space(tilt: float) -> None:
     """A column of 3 m, 0.4 m deep: tan(lean) = cos(tilt) 0.4 / 3, as it tilts in its plane."""
     given = {"depth": 0.4, "drums": 6, "drum_height": 0.5, "width": 1.0}

@@ -99,7 +99,7 @@ VARIED = [("column", {}), ("wall", {}), ("rubble", {}), ("circular-arch", {"vous
             more,
             engine,
             way,
-            marks=[] if (kind, engine) == ("column", "direct") else LONG,
+            marks=[] if (kind, engine, way) == ("column", "direct", loaded) else LONG,
             id=f"{kind}{more.get('voussoirs', '')}-{engine}-{way.__name__}",
         )
         for kind, more in VARIED
