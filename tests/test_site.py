@@ -68,26 +68,30 @@ def is_dark(page: Any) -> bool:
 
 
 @pytest.mark.parametrize(
-    ("widths", "schemes"),
+    ("widths", "schemes", "names"),
     [
-        pytest.param(widths, schemes, marks=[] if quick else pytest.mark.long)
-        for widths, schemes, quick in (
-            ((390, 1280), ("dark", "light"), True),
-            ((1280, 390), ("dark", "light"), False),
-            ((390, 1280), ("light", "dark"), False),
-            ((1280, 390), ("light", "dark"), False),
-        )
+        # Formulas, tables, code and pictures.
+        ((390, 1280), ("dark", "light"), SEEN[1::2]),
+        *(
+            pytest.param(widths, schemes, SEEN, marks=pytest.mark.long)
+            for widths in ((390, 1280), (1280, 390))
+            for schemes in (("dark", "light"), ("light", "dark"))
+        ),
     ],
 )
 def test_pages_fit_the_screen_and_ask_nothing_of_the_network(
-    site: Path, browser: Any, widths: tuple[int, int], schemes: tuple[str, str]
+    site: Path,
+    browser: Any,
+    widths: tuple[int, int],
+    schemes: tuple[str, str],
+    names: tuple[str, ...],
 ) -> None:
     """Each in a window of one width and then of the other, in one of the schemes by turns."""
     pages = {each: new_page(browser, color_scheme=each) for each in schemes}
     asked: list[str] = []
     for page in pages.values():
         page.on("request", lambda request: asked.append(request.url))
-    for name, (scheme, page) in zip(SEEN, cycle(pages.items())):
+    for name, (scheme, page) in zip(names, cycle(pages.items())):
         page.set_viewport_size({"width": widths[0], "height": 800})
         page.goto(f"{(site / name).as_uri()}.html")
         for width in widths:

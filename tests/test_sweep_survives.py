@@ -130,7 +130,7 @@ def cluster(folder: Path, workers: int) -> Iterator[tuple[str, int]]:
 def test_a_dask_cluster_gives_the_same_rows(tmp_path: Path, uninterrupted: Rows) -> None:
     asked = written(tmp_path, SIMULATED)
     with cluster(tmp_path, 1) as (address, _):
-        done = blocksim(*asked, "--scheduler", address, "--json")
+        done = inside(*asked, "--scheduler", address, "--json")
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["rows"] == 40
     assert rows_of(tmp_path / "out") == uninterrupted
