@@ -35,8 +35,8 @@ from blocksim import Arch, CircularArch, Problem
 from blocksim.arch.circular import Weight
 from blocksim.arch.limit.statics import least_thickness
 from blocksim.blocks.assembly import SUPPORT
-from blocksim.engines.contact import ContactProblem, Solution
 from blocksim.engines.contact.coulomb import OPEN, SLIDES_DOWN, SLIDES_UP, STICKS
+from blocksim.engines.contact.solver import ContactProblem, Solution
 from blocksim.limit.starting import LEAST_POWER, Start, may_start, rates_of
 from blocksim.view.drawing import save_figure
 

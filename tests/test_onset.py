@@ -14,7 +14,7 @@ from images import moved
 from worlds import ContactProblem, Quality, Simulation, hold, observe
 
 from blocksim import CircularArch, Problem, Settings, Verdict, Wall, bracket, check, simulate
-from blocksim.engines.contact import Solution
+from blocksim.engines.contact.solver import Solution
 from blocksim.simulation.motion import EARLY, FINER, MOVED, QUIET, moving_run
 
 TWO_ANSWERS = [

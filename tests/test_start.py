@@ -43,6 +43,12 @@ def test_no_command_waits_for_what_it_does_not_need(arguments: str, besides: set
     assert not loaded(arguments)[0] & (SLOW | besides)
 
 
+def test_pictures_and_recordings_wait_for_no_solver_before_they_are_asked() -> None:
+    found, _ = loaded("render --help")
+    assert "blocksim.simulation.motion" in found
+    assert not found & {"scipy", "highspy", "clarabel", "matplotlib", "blocksim.engines.direct"}
+
+
 def test_an_arch_that_falls_is_told_by_the_solver_alone() -> None:
     """HiGHS greets on standard output, by itself, from 1.16 on: nothing but the answer is."""
     found, said = loaded(f"check {ARCH} --eta 0.1 --method limit --json", code=1)

@@ -12,7 +12,7 @@ from blocksim.engines import get_engine as get_engine
 from blocksim.engines.base import Engine as Engine
 from blocksim.engines.base import Quality as Quality
 from blocksim.engines.base import trusted as trusted
-from blocksim.engines.contact import ContactProblem as ContactProblem
+from blocksim.engines.contact.solver import ContactProblem as ContactProblem
 from blocksim.engines.direct import Blocks as Blocks
 from blocksim.engines.ground import ground_level as ground_level
 from blocksim.limit import least_motion as least_motion

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from blocksim.ask.methods import choose
 from blocksim.ask.simulate import simulate as let_go
-from blocksim.ask.spread import Spreading
 from blocksim.blocks.problem import Problem
 from blocksim.cli.arguments import argument, option
 from blocksim.cli.given import Given, Loading, given_of
@@ -96,6 +95,8 @@ def _spread(
     require(settings is None, "--set", settings, "left out where supports move")
     still = "blocks at rest on ground that does not shake: supports move slowly"
     require(not problem.is_moving, "--over", over, f"left out, or {still}")
+    from blocksim.ask.spread import Spreading
+
     with named_options(), progress() as report:
         return Spreading(problem).recorded(report)
 

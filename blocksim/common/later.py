@@ -162,7 +162,9 @@ if TYPE_CHECKING:
     from scipy import sparse as sparse
     from scipy.sparse import csgraph as csgraph
     from scipy.sparse import linalg as sparse_linalg  # pyright: ignore[reportUnusedImport]
+    from scipy.spatial import transform as transform
 else:
     linalg, optimize = Library("scipy.linalg"), Library("scipy.optimize")
     sparse, csgraph = Library("scipy.sparse"), Library("scipy.sparse.csgraph")
     sparse_linalg = Library("scipy.sparse.linalg")
+    transform = Library("scipy.spatial.transform")

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SPATIAL, Array, Assembly
+from blocksim.common.later import transform
 from blocksim.engines.faces import LEDGE, Side
 
 PLATE = 0.15
@@ -40,7 +40,7 @@ class Frame:
     def __init__(
         self, columns: Sequence[int], built: Array | Sequence[float] = UNTURNED
     ) -> None:
-        self.columns, self._built = list(columns), Rotation.from_quat(built)
+        self.columns, self._built = list(columns), transform.Rotation.from_quat(built)
 
     def motions(self, linear: Array, angular: Array) -> Array:
         """Return velocities (blocks, 3) along and about the engine's axes as columns."""
@@ -54,7 +54,7 @@ class Frame:
 
     def poses(self, places: Array, quaternions: Array) -> Array:
         """Return places (blocks, 3) and orientations x, y, z, w (blocks, 4) likewise."""
-        since = Rotation.from_quat(quaternions) * self._built.inv()
+        since = transform.Rotation.from_quat(quaternions) * self._built.inv()
         return self.motions(places, since.as_rotvec())
 
 

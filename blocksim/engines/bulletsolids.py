@@ -13,11 +13,11 @@ from collections import defaultdict
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SPATIAL, SUPPORT, Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.common.later import transform
 from blocksim.engines.boxes import UNTURNED, Box, Frame
 from blocksim.engines.bulletparts import Joints, Link, let_go, linked, met
 from blocksim.engines.bulletspace import NOTHING, SLOP, Space, State, friction_share
@@ -125,5 +125,5 @@ class Spatial(Polyhedra):
 
 def _standing(normal: Array) -> Array:
     """Return axes of a box of which one corner looks against a normal, (3, 3)."""
-    turn, _ = Rotation.align_vectors([normal], [DIAGONAL])
+    turn, _ = transform.Rotation.align_vectors([normal], [DIAGONAL])
     return turn.as_matrix()

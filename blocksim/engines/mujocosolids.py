@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.common.later import transform
 from blocksim.engines.mujocoblocks import (
     compiled,
     let_touch,
@@ -106,7 +106,7 @@ class Spatial(Polyhedra):
 
     def placed(self, poses: Array) -> Array:
         """Return centres and quaternions at poses."""
-        turns = Rotation.from_matrix(self.place(poses).turns[:-1]).as_quat()
+        turns = transform.Rotation.from_matrix(self.place(poses).turns[:-1]).as_quat()
         return np.hstack([poses[:, :3], turns[:, ORDER]]).ravel()
 
     def rates(self, places: Array, moved: Array) -> Array:
@@ -118,7 +118,7 @@ class Spatial(Polyhedra):
     def loads(self, places: Array) -> Array | None:
         """Return loads besides gravity, moments about bodies' own axes."""
         now = places.reshape(-1, 7)
-        since = _turns(now) * Rotation.from_quat(self.quaternions).inv()
+        since = _turns(now) * transform.Rotation.from_quat(self.quaternions).inv()
         found = self.along(np.hstack([now[:, :3], since.as_rotvec()]))
         if found is None:
             return None
@@ -126,6 +126,6 @@ class Spatial(Polyhedra):
         return found.ravel()
 
 
-def _turns(places: Array) -> Rotation:
+def _turns(places: Array) -> transform.Rotation:
     """Return rotations of coordinates (blocks, 7)."""
-    return Rotation.from_quat(places[:, [4, 5, 6, 3]])
+    return transform.Rotation.from_quat(places[:, [4, 5, 6, 3]])

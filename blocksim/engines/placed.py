@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
-from blocksim.engines.contact import ContactProblem, Neighbours, Solution, Touch
+from blocksim.engines.contact.geometry import Touch
+from blocksim.engines.contact.neighbours import Neighbours
+from blocksim.engines.contact.solver import ContactProblem, Solution
 
 DEEPEST = 1e-3
 """Overlap that is pushed apart at once, over how far the corners of the smaller block are from

@@ -13,12 +13,12 @@ from functools import cached_property
 from typing import NamedTuple, Self
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import FaceJoint, SpatialAssembly
 from blocksim.blocks.space.polyhedron import frame
+from blocksim.common.later import transform
 from blocksim.engines.energy import Balance
 from blocksim.engines.solid.between import as_built
 from blocksim.engines.solid.bodies import Bodies, Place
@@ -92,11 +92,11 @@ class Polyhedra:
     @property
     def quaternions(self) -> Array:
         """How blocks are built, along their principal axes, (blocks, 4)."""
-        return Rotation.from_matrix(self.bodies.built.turns[:-1]).as_quat()
+        return transform.Rotation.from_matrix(self.bodies.built.turns[:-1]).as_quat()
 
     def place(self, poses: Array) -> Place:
         """Return where blocks are by their poses."""
-        turned = Rotation.from_rotvec(poses[:, 3:]).as_matrix()
+        turned = transform.Rotation.from_rotvec(poses[:, 3:]).as_matrix()
         built = self.bodies.built
         return Place(
             np.vstack([poses[:, :3], built.centres[-1:]]),
@@ -155,7 +155,9 @@ class Polyhedra:
     def within(self, index: int, place: Array, axes: Array) -> tuple[list[float], Array]:
         """Return a place in the frame of a body, and its axes there as a quaternion, (4,)."""
         turn, origin = self.bodies.built.turns[index].T, self.bodies.built.centres[index]
-        return (turn @ (place - origin)).tolist(), Rotation.from_matrix(turn @ axes).as_quat()
+        return (turn @ (place - origin)).tolist(), transform.Rotation.from_matrix(
+            turn @ axes
+        ).as_quat()
 
     def _has_face(self, joint: FaceJoint, sign: float) -> bool:
         """Tell whether the block on a side of a joint has a face along it."""

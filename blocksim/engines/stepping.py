@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
-from blocksim.engines.contact import Solution, Touch
 from blocksim.engines.contact.coulomb import OPEN, STICKS
 from blocksim.engines.contact.events import first_closing
+from blocksim.engines.contact.geometry import Touch
+from blocksim.engines.contact.solver import Solution
 from blocksim.engines.placed import Placed
 
 RESIDUAL = 1e-7

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from scipy.optimize import brentq
 
 from blocksim.blocks.maker import metres
+from blocksim.common.later import optimize
 from blocksim.kinds.archkind import CurvedArch
 from blocksim.kinds.curves import Curve
 
@@ -41,7 +41,7 @@ class CatenaryArch(CurvedArch):
         def excess(u: float) -> float:
             return 2 * math.sinh(u / 2) ** 2 / u - ratio
 
-        inverse = float(brentq(excess, 1e-6, 20.0, xtol=1e-15, rtol=1e-15))
+        inverse = float(optimize.brentq(excess, 1e-6, 20.0, xtol=1e-15, rtol=1e-15))
         return self.span / 2 / inverse
 
     def curve(self) -> Curve:

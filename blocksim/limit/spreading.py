@@ -23,10 +23,10 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from scipy.optimize import brentq
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Load, Problem
+from blocksim.common.later import optimize
 from blocksim.limit.displaced import ENOUGH, Displaced, Frame, Lost
 from blocksim.limit.programme import falling, settling
 
@@ -181,7 +181,7 @@ def _where(
         # Hinges about to get into line press without bound, which the programme does not tell.
         return 0.0 if math.isnan(found) else found
 
-    return at(0.0 if left(0.0) <= 0 else float(brentq(left, 0.0, 1.0, xtol=1e-13)))
+    return at(0.0 if left(0.0) <= 0 else float(optimize.brentq(left, 0.0, 1.0, xtol=1e-13)))
 
 
 def _falls(blocks: Displaced, frame: Frame) -> tuple[Frame | None, Frame | None, Lost | None]:

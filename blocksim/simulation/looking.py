@@ -11,11 +11,7 @@ from blocksim.blocks.joints import overlap_and_slip
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.parting import overlap_and_slip_in_space
 from blocksim.engines.base import Settings, World, trusted
-from blocksim.engines.solid.bodies import Bodies
-from blocksim.engines.solid.dilation import dilating
-from blocksim.engines.solid.stepping import at_rest
 from blocksim.limit import equilibrium, least_motion
-from blocksim.limit.space import can_rest
 
 STICKS = 1e-4
 """Slip over the largest motion of a joint up to which a mechanism does not slide.
@@ -73,7 +69,7 @@ class Looking:
         if not self._in_space:
             forces = equilibrium(self._asked).forces
             return forces is not None, forces
-        found = can_rest(self._problem)
+        found = equilibrium(self._problem)
         forces = found.point_forces
         if forces is not None:
             forces = forces / self._problem.unit_force
@@ -82,6 +78,10 @@ class Looking:
     def least(self) -> Array | None:
         """Return such forces that leave least acceleration; in space joints that slide open."""
         if self._in_space:
+            from blocksim.engines.solid.bodies import Bodies
+            from blocksim.engines.solid.dilation import dilating
+            from blocksim.engines.solid.stepping import at_rest
+
             return dilating(at_rest(Bodies(self._problem)))
         least = least_motion(self._asked)
         return None if least is None else least.forces

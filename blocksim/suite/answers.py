@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import Any, Literal, cast, get_args
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import LONGEST, MISSING, InputError, perhaps
 from blocksim.common.files import AnyPath, json_of, opened
+from blocksim.common.later import transform
 from blocksim.engines.base import Settings
 from blocksim.simulation.recording import Recording
 from blocksim.suite.families import Question
@@ -179,7 +179,9 @@ def recording_of(head: Head, poses: Array, question: Question) -> Recording[Any]
     size = problem.assembly.size
     if problem.in_space:
         # Ours have the real part last.
-        turns = Rotation.from_quat(poses[..., [4, 5, 6, 3]].reshape(-1, 4)).as_rotvec()
+        turns = transform.Rotation.from_quat(
+            poses[..., [4, 5, 6, 3]].reshape(-1, 4)
+        ).as_rotvec()
         moved = np.concatenate([poses[..., :3] / size, turns.reshape(*poses.shape[:2], 3)], -1)
     else:
         moved = poses / [size, size, 1.0]

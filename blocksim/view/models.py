@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.blocks.space.extruded import lifted, prism, prisms
 from blocksim.blocks.space.polyhedron import Polyhedron
+from blocksim.common.later import transform
 from blocksim.common.words import printable
 from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import colour
@@ -103,8 +103,8 @@ def _put(
     told = sorted({tone for each in marks.values() for *_, tone in each})
     looks = {tone: made.material(f"joint {tone}", colour(tone)) for tone in told}
     vectors = poses[..., 3:].reshape(-1, 3)
-    upright = UPRIGHT @ Rotation.from_rotvec(vectors).as_matrix() @ UPRIGHT.T
-    turns = Rotation.from_matrix(upright).as_quat().reshape(*poses.shape[:2], 4)
+    upright = UPRIGHT @ transform.Rotation.from_rotvec(vectors).as_matrix() @ UPRIGHT.T
+    turns = transform.Rotation.from_matrix(upright).as_quat().reshape(*poses.shape[:2], 4)
     # q and -q are one rotation: each is the one nearer to that before.
     alike = (turns[1:] * turns[:-1]).sum(axis=-1) >= 0
     turns[1:] *= np.cumprod(np.where(alike, 1.0, -1.0), axis=0)[..., None]

@@ -12,11 +12,11 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.space.extruded import lifted
+from blocksim.common.later import transform
 from blocksim.simulation.motion import AT_REST, FRAME, UNMOVED, UNSEEN
 from blocksim.simulation.recording import Recording
 
@@ -58,16 +58,16 @@ def poses_between(recording: Recording[Any], earlier: int, later: int, share: fl
     if not share:
         return one
     # Turns between frames are even.
-    first = Rotation.from_rotvec(one[:, 3:])
-    way = (Rotation.from_rotvec(two[:, 3:]) * first.inv()).as_rotvec()
-    turned = Rotation.from_rotvec(share * way) * first
+    first = transform.Rotation.from_rotvec(one[:, 3:])
+    way = (transform.Rotation.from_rotvec(two[:, 3:]) * first.inv()).as_rotvec()
+    turned = transform.Rotation.from_rotvec(share * way) * first
     places = one[:, :3] + share * (two[:, :3] - one[:, :3])
     return np.hstack([places, turned.as_rotvec()])
 
 
 def upright(poses: Array) -> tuple[Array, Array]:
     """Return turns, (blocks, 3, 3), and centres, (blocks, 3), y upwards, of poses."""
-    turns = Rotation.from_rotvec(poses[:, 3:]).as_matrix()
+    turns = transform.Rotation.from_rotvec(poses[:, 3:]).as_matrix()
     return UPRIGHT @ turns @ UPRIGHT.T, poses[:, :3] @ UPRIGHT.T
 
 

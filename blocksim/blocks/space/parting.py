@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.common.later import transform
 
 
 def parted(assembly: SpatialAssembly, poses: Array) -> tuple[Array, Array]:
@@ -24,7 +24,7 @@ def parted(assembly: SpatialAssembly, poses: Array) -> tuple[Array, Array]:
         on = block != SUPPORT
         own, at = points[on], block[on]
         centre = assembly.centres[at] / size
-        turned = Rotation.from_rotvec(poses[at, 3:]).apply(own - centre)
+        turned = transform.Rotation.from_rotvec(poses[at, 3:]).apply(own - centre)
         way[on] += sign * (poses[at, :3] + turned - own)
     gap = np.einsum("pi,pi->p", way, normals)
     slip = np.linalg.norm(way - gap[:, None] * normals, axis=1)

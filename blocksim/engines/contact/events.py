@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import brentq
 
 from blocksim.blocks.assembly import Array
+from blocksim.common.later import optimize
 
 PARTS = 64
 """Parts of a step in which the first sign of closing is looked for."""
@@ -43,5 +43,5 @@ def first_closing(gap: Array, rate: Array, later: Array, at_end: Array, step: fl
     if not least(low) > 0 > least(high):
         return step * high
     # Beyond the zero, so that something has closed.
-    found = brentq(least, low, high, xtol=CLOSE)
+    found = optimize.brentq(least, low, high, xtol=CLOSE)
     return step * min(high, float(found) + CLOSE)

@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.common.later import transform
 from blocksim.engines.contact.banded import Bands
 from blocksim.engines.solid.hulls import hulls_of
 from blocksim.engines.solid.step import Step
@@ -29,7 +29,7 @@ class Place(NamedTuple):
         """Return the place after ways along x, y, z and about the frames' axes, (blocks, 6)."""
         centres, turns = self.centres.copy(), self.turns.copy()
         centres[:-1] += way[:, :3]
-        turns[:-1] = turns[:-1] @ Rotation.from_rotvec(way[:, 3:]).as_matrix()
+        turns[:-1] = turns[:-1] @ transform.Rotation.from_rotvec(way[:, 3:]).as_matrix()
         return Place(centres, turns)
 
 
@@ -130,7 +130,9 @@ class Bodies:
     def poses(self, place: Place) -> Array:
         """Return centres and rotation vectors since they were built, (blocks, 6)."""
         turned = place.turns[:-1] @ self.built.turns[:-1].transpose(0, 2, 1)
-        return np.hstack([place.centres[:-1], Rotation.from_matrix(turned).as_rotvec()])
+        return np.hstack(
+            [place.centres[:-1], transform.Rotation.from_matrix(turned).as_rotvec()]
+        )
 
 
 def carried(places: Array, block: NDArray[np.int64], found: Place, there: Place) -> Array:
