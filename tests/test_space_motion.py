@@ -14,6 +14,7 @@ from space_cases import GROUND, NAMES, asked, box, case, enclosed, problem_of
 from worlds import observe
 
 import blocksim
+from analysis import known_motions
 from blocksim import (
     Dome,
     GroinVault,
@@ -109,6 +110,13 @@ def test_what_is_let_go_does_what_the_onset_test_said(name: str) -> None:
         answer = blocksim.check(problem, method="direct")
         assert answer.verdict is verdict
         assert [each.test for each in answer.evidence][:2] == ["onset test", "moving run"]
+
+
+def test_what_stands_on_an_edge_turns_about_it() -> None:
+    """A block of 1 x 4 m that leans: nothing parts there, and round-off is no overlap."""
+    problem = extruded(known_motions.rocking(1).problem)
+    assert blocksim.check(problem, method="direct").verdict is Verdict.COLLAPSES
+    assert blocksim.simulate(problem, method="direct", duration=0.5).times[-1] == 0.5
 
 
 @pytest.mark.parametrize("name", NAMES[::3])

@@ -145,6 +145,12 @@ class Bodies(ABC):
         return np.sqrt(np.maximum(shift, far)).max(axis=-1)
 
     @cached_property
+    def lesser_reach(self) -> Array:
+        """Reach of the smaller block at each joint, (joints,) [size]."""
+        reach = np.append(self.reach, np.inf)[self.sides]
+        return frozen(reach.min(axis=0) / self.size, (-1,))
+
+    @cached_property
     def _square_reach(self) -> Array:
         """Of each block, (blocks,), in units of the size."""
         return (self.reach / self.size) ** 2

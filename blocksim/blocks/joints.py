@@ -103,15 +103,18 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
 def overlap_and_slip(assembly: Assembly, poses: Array) -> tuple[float, float]:
     """Deepest overlap at the end of a joint, and largest slip of one.
 
-    Both are shares of the largest motion of a joint: opening by rotation, or slip. A motion
-    that contacts allow has next to no overlap; one driven by contacts that have not converged
-    presses blocks into each other.
+    Both are shares of the largest motion of a joint: opening by rotation, or slip. A corner has
+    no length: the reach of the smaller block stands for it. A motion that contacts allow has
+    next to no overlap; one driven by contacts that have not converged presses blocks into each
+    other.
     """
     motion, joints = joint_motion(assembly, poses), assembly.joint_arrays
     gap, slip = motion.gap.min(axis=1), np.abs(motion.slip)
-    # A corner has no length to open by rotation: it parts.
-    turned = np.abs(motion.turn) * joints.length
-    moves = [np.where(joints.is_corner, np.abs(motion.gap[:, 0]), turned), slip]
+    turned = np.abs(motion.turn) * np.where(
+        joints.is_corner, assembly.lesser_reach, joints.length
+    )
+    parted = np.where(joints.is_corner, np.abs(motion.gap[:, 0]), 0.0)
+    moves = [turned, parted, slip]
     moved = max(float(move.max(initial=0.0)) for move in moves)
     if not moved > 0:
         return 0.0, 0.0

@@ -289,6 +289,8 @@ class Engine(Method):
         Relative width of the brackets that `validate` asks it for, of arches.
     aside : float
         Share of a known value by which `validate` goes to either side of it, of structures.
+    beside : tuple of float
+        Steps of the runs by which the error of a motion is told, in those of the motion.
     most_blocks : int
         Blocks up to which `validate` asks it: it takes minutes for more.
     """
@@ -314,6 +316,7 @@ class Engine(Method):
     validates: tuple[str, ...] = ()
     validated_to: float = 0.004
     aside: float = 0.01
+    beside: tuple[float, ...] = (2.0,)
     most_blocks: int = 40
 
     @property

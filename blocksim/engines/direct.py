@@ -21,6 +21,7 @@ from blocksim.common.checks import require
 from blocksim.common.version import __version__
 from blocksim.engines.base import Engine, Quality, Settings, World
 from blocksim.engines.energy import Balance, energy
+from blocksim.engines.placed import BEGINS
 from blocksim.engines.solid import MOST_FRICTION
 from blocksim.engines.stepping import LEAST, RESIDUAL, Stepping
 
@@ -93,15 +94,26 @@ class Blocks(Stepping):
         left = steps * self._step
         while left > LEAST * self._step:
             step = self._suits(left)
-            before = vars(self).copy()
+            before, rested = vars(self).copy(), self._is_at_rest
             self._move(step)
-            if step > self._step and np.abs(self._poses - before["_poses"]).max() > SLOW:
-                # Blocks move after all: again, in steps of the usual length.
+            while self._is_too_long(step, before["_poses"], rested):
                 vars(self).update(before)
-                step = min(self._step, left)
+                step = min(self._step, left) if step > self._step else step / 2
                 self._move(step)
             left -= step
         self._balance.look(self._poses, self._velocities, self._velocities)
+
+    def _is_too_long(self, step: float, before: Array, rested: bool) -> bool:
+        """Tell whether a step that was taken has to be shorter.
+
+        In a long one blocks move after all; or blocks at rest begin to move as the ground
+        shakes, and when in the step they do is not known.
+        """
+        if step > self._step:
+            return bool(np.abs(self._poses - before).max() > SLOW)
+        if self._asked.shaking is None or step < BEGINS * self._step:
+            return False
+        return rested and not self._is_at_rest
 
     def _suits(self, left: float) -> float:
         """Return how long a step may be, of what is left."""

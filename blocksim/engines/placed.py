@@ -16,6 +16,10 @@ from blocksim.engines.contact.solver import ContactProblem, Solution
 DEEPEST = 1e-3
 """Overlap that is pushed apart at once, over how far the corners of the smaller block are from
 its centre."""
+AT_REST = 1e-9
+"""Velocity of blocks at rest [sqrt(size g)]."""
+BEGINS = 1 / 32
+"""Share of a step to which the moment is known at which blocks begin to move."""
 NO_GUESS: tuple[NDArray[np.int64] | None, Solution | None] = None, None
 """Pairs, and what their contacts do, where no more is known than of the last step."""
 
@@ -47,6 +51,11 @@ class Placed:
         speed: Array = np.hypot(*self._velocities[:, :2].T)
         return speed + np.abs(self._velocities[:, 2]) * self._reach
 
+    @property
+    def _is_at_rest(self) -> bool:
+        """Whether no block moves."""
+        return float(self._speeds().max()) < AT_REST
+
     def _drive(self, step: float) -> None:
         """Set the velocities of what is moved; here nothing is."""
 
@@ -56,9 +65,15 @@ class Placed:
             self._free = self._asked.applied_forces(self._looked) / self._mass
 
     def _shake(self, step: float) -> None:
-        """Add what the ground's acceleration does in a step to the accelerations."""
+        """Add what the ground's acceleration does in a step to the accelerations.
+
+        Blocks at rest begin to move by that at its end: by the mean of the step they might not,
+        and begin too late. Where they rest at both ends they rest between.
+        """
         if self._asked.shaking is not None:
             start, self._time = self._time, self._time + step
+            if self._is_at_rest:
+                start = self._time - BEGINS * step
             seen = self._asked.shaken(start, self._time) - self._asked.gravity
             self._free = (self._free if self._turning else self._still).copy()
             self._free[:, :2] += seen[:2]

@@ -62,8 +62,8 @@ DEEP = 1e-5
 """Overlap that a step makes up for at most [size]."""
 FAR = 1e3
 """Velocity that a contact taken for open cannot lose in a step, over those there are."""
-AT_REST, MOVES = 1e-9, 1e-6
-"""Velocity of blocks at rest [sqrt(size g)], and acceleration that begins a motion [g]."""
+MOVES = 1e-6
+"""Acceleration that begins a motion [g]."""
 Passing = NDArray[np.bool_]
 """Of contacts, shape (joints, 2)."""
 
@@ -180,10 +180,7 @@ class Stepping(Placed):
         rates[:, :2] += REGAIN * np.maximum(gap, -DEEP) / max(step, self._usual)
         rates[:, :2][~shut] += FAR * (1 + float(np.abs(rates).max(initial=0.0)))
         solution = self._solve(touch, rates / step, PRECISION)
-        if (
-            float(self._speeds().max()) < AT_REST
-            and np.abs(solution.acceleration).max() > MOVES
-        ):
+        if self._is_at_rest and np.abs(solution.acceleration).max() > MOVES:
             solution = self._or_rest(touch, rates / step, solution)
         self._shut = shut
         self._begins = start.gap, rate[:, :2]

@@ -230,6 +230,6 @@ def recording_lines(recording: Recording, unit: str) -> list[str]:
         unit_s = problem.seconds
         late = "" if kept.late is None else f", in time by {kept.late * unit_s:.1e} s,"
         lines.append(
-            f"  a run at twice the step {found}{late} until {until * unit_s:.3g} s{ends}"
+            f"  a run at another step {found}{late} until {until * unit_s:.3g} s{ends}"
         )
     return lines

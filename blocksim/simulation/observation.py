@@ -71,7 +71,7 @@ class Held(Generic[Blocks]):
             self.onset.repeat(world)
             return world
 
-        return compared(recording, world_at)
+        return compared(recording, world_at, simulation.engine.beside)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

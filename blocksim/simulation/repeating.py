@@ -2,8 +2,10 @@
 
 Between impacts errors are of second order, so those of the finer of two runs, whose steps are
 as one to two, are about a third of their difference. Many impacts leave little of that order.
-So `SAFE` times the difference is told. Where it passes `KNOWN` the motion is not known any
-more: of blocks that fall in a heap no step is fine enough.
+So `SAFE` times the difference is told. Where in a step blocks hit or lift off is chance for
+some engines: at twice the step it may be the same, so more runs of theirs are compared. Where
+the difference passes `KNOWN` the motion is not known any more: of blocks that fall in a heap no
+step is fine enough.
 """
 
 from __future__ import annotations
@@ -31,7 +33,7 @@ COARSER = 2
 def estimated(
     recording: Recording[Blocks], poses: Sequence[Array], frames: Sequence[int] | slice
 ) -> Recording[Blocks]:
-    """Return a recording with the errors that another run shows.
+    """Return a recording with the errors that another run shows, where they are the worst.
 
     `poses`, sequence of (blocks, 3 or 6): Of the other run, from the release on.
     `frames`: Frames of the recording at the same times; those beyond the other run do not
@@ -44,12 +46,15 @@ def estimated(
     beyond = np.flatnonzero(off > KNOWN)
     count = int(beyond[0]) if len(beyond) else len(off)
     gone = [_gone(times, displaced(each - each[0])) for each in (mine, other)]
+    told = recording.quality
+    late = SAFE * abs(gone[0] - gone[1]) if all(gone) else None
+    known = float(times[count - 1]) if len(beyond) else None
     quality = replace(
-        recording.quality,
+        told,
         penetration=_deepest(recording),
-        error=float(off[:count].max()),
-        late=SAFE * abs(gone[0] - gone[1]) if all(gone) else None,
-        known=float(times[count - 1]) if len(beyond) else None,
+        error=max(float(off[:count].max()), told.error or 0.0),
+        late=max((each for each in (late, told.late) if each is not None), default=None),
+        known=min((each for each in (known, told.known) if each is not None), default=None),
     )
     return replace(recording, quality=quality)
 
@@ -75,20 +80,22 @@ def _deepest(recording: Recording[Any]) -> float | None:
 
 
 def compared(
-    recording: Recording[Blocks], world_at: Callable[[float], World]
+    recording: Recording[Blocks], world_at: Callable[[float], World], beside: Sequence[float]
 ) -> Recording[Blocks]:
-    """Return a recording with the errors that a run at `COARSER` steps shows.
+    """Return a recording with the errors that runs at other steps show, the worst of them.
 
     Where these pass `KNOWN` blocks are let go at half the step, too. If that agrees, it is
     what is returned.
 
     `world_at`: Gives the same blocks, at rest, in an engine whose steps are so long.
+    `beside`: Steps of the other runs, in those of the recording; `COARSER` is the first.
     """
     if len(recording.times) < 2:
         return recording
-    step = recording.settings.step
-    poses, frames, _ = _again(recording, world_at, COARSER * step)
-    found = estimated(recording, poses, frames)
+    step, found = recording.settings.step, recording
+    for share in beside:
+        poses, frames, _ = _again(recording, world_at, share * step)
+        found = estimated(found, poses, frames)
     if found.quality.known is None:
         return found
     poses, frames, world = _again(recording, world_at, step / COARSER)
@@ -102,6 +109,10 @@ def compared(
     )
     # They may part at the last frame.
     agreed = estimated(finer, list(recording.poses), frames)
+    for share in beside[1:]:
+        if agreed.quality.known is None:
+            poses, frames, _ = _again(finer, world_at, share * step / COARSER)
+            agreed = estimated(agreed, poses, frames)
     return agreed if agreed.quality.known is None else found
 
 

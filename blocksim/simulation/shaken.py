@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any, cast
 
 import numpy as np
@@ -25,12 +26,13 @@ from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Engine, TakesForces, TakesVelocities, World, trusted
-from blocksim.engines.contact.geometry import Geometry, turns_of
+from blocksim.engines.contact.geometry import Geometry
 from blocksim.limit import equilibrium
 from blocksim.simulation.motion import FRAME, distrust, lie_still
 from blocksim.simulation.observation import hold
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.repeating import COARSER, KNOWN, SAFE, estimated
+from blocksim.simulation.rocking import TURNED, Rocking, rocking_of
 from blocksim.simulation.simulated import BY_RULE, Overrides, Simulation, given_words
 from blocksim.simulation.verdict import Verdict
 
@@ -41,26 +43,8 @@ LONGEST = 200.0
 APART = 0.01
 """Gap across a joint from which its blocks do not touch [size]."""
 MAY_REST = "they can rest all the same: forces of equilibrium exist at any time"
-TURNED, SHUT = 1e-4, 1e-7
-"""Rotation by which a joint has opened, and at which it has closed again [rad]."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Rocking:
-    """How blocks of a recording turned.
-
-    `rotation`: Largest rotation of any block at any time [rad].
-    `block`: Which one that was.
-    `impact`: When a joint that had opened closed first [sqrt(size/g)]; None where none did.
-    `off`, `late`: How far off rotation and impact may be, by a run at another step; None
-        without one.
-    """
-
-    rotation: float
-    block: int
-    impact: float | None
-    off: float | None = None
-    late: float | None = None
+PARTS = 8
+"""Parts of a step, to which times of frames are the same in runs at other steps."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -95,9 +79,10 @@ def shake(
 ) -> Shaken:
     """Let blocks go on ground that shakes, and see what becomes of them.
 
-    They are shaken again at twice the step. Where that ends otherwise, or the largest rotations
-    differ by more than `KNOWN` of it, they are shaken at half the step as well, which is what
-    is returned. What is said is what both finer runs say; `undecided` if they differ.
+    They are shaken again at twice the step, and at others that the engine asks for. Where one
+    ends otherwise, or the largest rotations differ by more than `KNOWN` of it, they are shaken
+    at half the step as well, which is what is returned. What is said is what all finer runs
+    say; `undecided` if they differ.
 
     `problem`: With `shaking` or `velocities`.
     `engine`: One that `shakes`.
@@ -105,15 +90,18 @@ def shake(
     `whole`: Go on where a block has sunk by `SUNK`, and the verdict is certain.
     `repeat`: Without, they are shaken once.
     """
-    step = Simulation.of(problem, engine, settings=settings).settings.step
-    stride = max(1, round(FRAME / step))
+    simulation = Simulation.of(problem, engine, settings=settings)
+    step, beside = simulation.settings.step, simulation.engine.beside
+    # Of so many steps each run has frames at the same times.
+    every = math.lcm(*(Fraction(share).numerator for share in beside))
+    stride = max(1, every * round(FRAME / (every * step)))
 
     def at(share: float) -> Shaken:
         """Shake them in steps of a share of those asked for; frames follow as they can."""
         return _once(
             problem,
             engine,
-            max(1, int(stride / share)),
+            max(1, round(stride / share)),
             until=until,
             whole=whole,
             settings={**settings, "step": share * step},
@@ -122,9 +110,10 @@ def shake(
 
     seen = usual = at(1.0)
     if repeat:
-        seen, differs = _beside(usual, at(COARSER))
+        seen, differs = _beside(usual, [at(share) for share in beside])
         if differs:
-            seen, _ = _beside(at(1 / COARSER), usual)
+            finer = (at(share / COARSER) for share in beside[1:])
+            seen, _ = _beside(at(1 / COARSER), [usual, *finer])
     if seen.verdict is Verdict.COLLAPSES and may_rest(problem):
         seen = replace(seen, verdict=Verdict.UNDECIDED, reason=f"{seen.reason}; {MAY_REST}")
     return replace(seen, reason=seen.reason + given_words(settings))
@@ -217,24 +206,30 @@ def _once(
     )
 
 
-def _beside(fine: Shaken, coarse: Shaken) -> tuple[Shaken, bool]:
-    """Return the finer of two answers with what the other tells, and whether they differ."""
-    one, two = fine.recording, coarse.recording
-    every = max(1, round(float(two.times[1] / one.times[1])))
-    recording = estimated(one, list(two.poses), slice(None, None, every))
-    off = SAFE * abs(fine.rocking.rotation - coarse.rocking.rotation)
-    hit, other = fine.rocking.impact, coarse.rocking.impact
-    late = None if hit is None or other is None else SAFE * abs(hit - other)
+def _beside(fine: Shaken, others: list[Shaken]) -> tuple[Shaken, bool]:
+    """Return an answer with what others at longer steps tell, and whether they differ."""
+    recording, step = fine.recording, fine.recording.settings.step
+    for other in (each.recording for each in others):
+        frames = {round(PARTS * time / step): at for at, time in enumerate(other.times)}
+        ticks = [round(PARTS * time / step) for time in recording.times]
+        shared = [at for at, tick in enumerate(ticks) if tick in frames]
+        poses = [other.poses[frames[ticks[at]]] for at in shared]
+        recording = estimated(recording, poses, shared)
+    off = SAFE * max(abs(fine.rocking.rotation - each.rocking.rotation) for each in others)
+    hits = [each.rocking.impact for each in (fine, *others)]
+    known = [hit for hit in hits if hit is not None]
+    late = SAFE * max(abs(hit - known[0]) for hit in known) if len(known) == len(hits) else None
     rocking = replace(fine.rocking, off=off, late=late)
     found = replace(fine, recording=recording, rocking=rocking)
-    if fine.verdict is not coarse.verdict:
-        steps = one.settings.step, two.settings.step
-        words = (
-            f"{fine.verdict} at a step of {steps[0]:.3g} sqrt(size/g), "
-            f"{coarse.verdict} at {steps[1]:.3g}"
-        )
-        return replace(found, verdict=Verdict.UNDECIDED, reason=f"{words}; {fine.reason}"), True
-    words = f"{fine.reason}; the same at {COARSER:g} times the step"
+    for each in others:
+        if fine.verdict is not each.verdict:
+            words = (
+                f"{fine.verdict} at a step of {step:.3g} sqrt(size/g), "
+                f"{each.verdict} at {each.recording.settings.step:.3g}; {fine.reason}"
+            )
+            return replace(found, verdict=Verdict.UNDECIDED, reason=words), True
+    times = " and ".join(f"{each.recording.settings.step / step:.3g}" for each in others)
+    words = f"{fine.reason}; the same at {times} times the step"
     stands = fine.verdict is Verdict.STANDS
     if stands and fine.rocking.rotation > TURNED:
         words += f", rotations to {off / fine.rocking.rotation:.1%}"
@@ -255,66 +250,6 @@ def outcome(recording: Recording) -> tuple[Verdict, str]:
     if sunk > SUNK:
         return Verdict.COLLAPSES, f"a block sank by {sunk * problem.assembly.size:.2g} m"
     return Verdict.UNDECIDED, "still moves when the time is over"
-
-
-def rocking_of(recording: Recording) -> Rocking:
-    """Read from the poses how far blocks turned, and when a joint first closed again."""
-    in_space = recording.problem.in_space
-    if in_space:
-        # From where blocks were built, by rotation vectors.
-        turned = np.linalg.norm(recording.poses[:, :, 3:], axis=2)
-    else:
-        turned = recording.poses[:, :, 2] - recording.poses[0, :, 2]
-    frame, block = np.unravel_index(int(np.abs(turned).argmax()), turned.shape)
-    impact = None if in_space else _first_impact(recording.assembly, recording.times, turned)
-    return Rocking(
-        rotation=_peak(np.abs(turned[:, block]), int(frame)), block=int(block), impact=impact
-    )
-
-
-def _peak(values: Array, at: int) -> float:
-    """Return the top of the parabola through the largest of some values and those beside it."""
-    if not 0 < at < len(values) - 1:
-        return float(values[at])
-    one, two, three = values[at - 1 : at + 2]
-    bend = one - 2 * two + three
-    return float(two - (three - one) ** 2 / (8 * bend)) if bend < 0 else float(two)
-
-
-def _first_impact(assembly: Assembly, times: Array, turned: Array) -> float | None:
-    """Find when the rotation of an open joint, followed from before, first comes to 0."""
-    joints = assembly.joint_arrays
-    still = np.column_stack([turned, np.zeros(len(turned))])
-    across = still[:, joints.after] - still[:, joints.before]
-    ways = [across[:, ~joints.is_corner]]
-    for joint in np.flatnonzero(joints.is_corner).tolist():
-        down, up = np.arcsin(turns_of(assembly, joint))
-        ways.append(np.stack([across[:, joint] + down, up - across[:, joint]], axis=1))
-    way = np.hstack(ways)
-    # Three to follow, and the one after.
-    if len(times) < 4:
-        return None
-    step = times[-1] - times[-2]
-    older, old, now, then = way[:-3], way[1:-2], way[2:-1], way[3:]
-    slope, bend = (3 * now - 4 * old + older) / 2, (now - 2 * old + older) / 2
-    expected = now + slope + bend
-    closes = (np.abs(older) > TURNED) & (older * now >= 0) & (now * expected <= 0)
-    closes &= (now * then <= 0) | (np.abs(then) < TURNED)
-    if not closes.any():
-        return None
-    frame = int(closes.any(axis=1).argmax())
-    shares = [
-        _zero(now[frame, at], slope[frame, at], bend[frame, at])
-        for at in np.flatnonzero(closes[frame])
-    ]
-    return float(times[frame + 2] + step * min(shares))
-
-
-def _zero(now: float, slope: float, bend: float) -> float:
-    """Find where a parabola first comes to 0 in a step."""
-    found = np.roots([bend, slope, now])
-    inside = found[(abs(found.imag) < SHUT) & (found.real >= 0) & (found.real <= 1)].real
-    return float(inside.min()) if len(inside) else 1.0
 
 
 def _ended(assembly: Assembly, poses: Array) -> int:

@@ -8,6 +8,9 @@ from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.common.later import transform
 
+FACE = 3
+"""Points of a joint from which on it has an area."""
+
 
 def parted(assembly: SpatialAssembly, poses: Array) -> tuple[Array, Array]:
     """Return how far each point of each joint opens and slips, (points,) each [size].
@@ -34,10 +37,15 @@ def parted(assembly: SpatialAssembly, poses: Array) -> tuple[Array, Array]:
 def overlap_and_slip_in_space(assembly: SpatialAssembly, poses: Array) -> tuple[float, float]:
     """Deepest overlap at a point of a joint, and largest slip at one that stays closed.
 
-    Both are shares of the largest motion of a point.
+    Both are shares of the largest motion of a point; or of what turns about an edge or a
+    corner: its turn times the reach of the smaller block.
     """
     gap, slip = parted(assembly, poses)
-    moved = max(float(np.abs(gap).max(initial=0.0)), float(slip.max(initial=0.0)))
+    turns = transform.Rotation.from_rotvec(np.vstack([poses[:, 3:], np.zeros(3)]))
+    before, after = assembly.sides
+    turned = (turns[before].inv() * turns[after]).magnitude() * assembly.lesser_reach
+    turned = turned[[len(each.points) < FACE for each in assembly.joints]]
+    moved = max(float(each.max(initial=0.0)) for each in (np.abs(gap), slip, turned))
     if not moved > 0:
         return 0.0, 0.0
     slides = float(np.where(gap < slip, slip, 0.0).max())
