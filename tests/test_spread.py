@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -479,11 +480,10 @@ def test_what_fell_stands_nowhere_beyond() -> None:
     a, b, c = left.inner, crown.outer, right.inner
     falls = math.dist(a, b) + math.dist(b, c) - math.dist(a, c)
     assert bracket(flat, over="spread", method="limit").limit == pytest.approx(falls, rel=1e-6)
-    for share in (0.9, 0.9999):
-        assert check(spread_by(flat, share * falls)).verdict is Verdict.STANDS
-    for share in (1.0001, 1.3):
-        answer = check(spread_by(flat, share * falls))
-        assert answer.verdict is Verdict.COLLAPSES
+    moved = Spreading(flat)
+    for share in (0.9, 0.9999, 1.0001, 1.001, 1.3, 2.0):
+        answer = check(replace(moved.at(share * falls), moves=()))
+        assert answer.verdict is (Verdict.STANDS if share < 1 else Verdict.COLLAPSES)
         assert answer.proved
 
 
