@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from running import answered, inside, ran
 from scipy.integrate import quad
 
 from blocksim import CircularArch, crossing, vehicle_of
+from blocksim.blocks.road import with_dispersal
 from blocksim.view.curvefigure import envelope_figure
 
 EIGHT = Bridge(span=8.0, rise=3.0, thick=0.45, count=31, fill=0.5)
@@ -62,10 +64,15 @@ def test_which_axle_stands_where() -> None:
 
 def test_strength_without_bound_on_friction() -> None:
     """A wheel that has hardly come is small beside what crushes; no joint slides at mu 2."""
-    arch = ("--span", "4", "--rise", "1.5", "--thickness", "0.45", "--voussoirs", "5")
-    fill = ("--unit-weight", "22", "--fill", "0.5", "--dispersal", "boussinesq")
-    crushes = (*arch, *fill, "--strength", "10", "--vehicle", "147@0")
-    at_will, rough = (answered("bracket", *crushes, "--mu", mu)["high"] for mu in ("inf", "2"))
+    sizes = {"span": 4, "rise": 1.5, "thickness": 0.45, "voussoirs": 5, "fill": 0.5}
+    arches = (CircularArch(**sizes, density=22_000, friction=mu) for mu in (math.inf, 2.0))
+    at_will, rough = (
+        crossing(
+            with_dispersal(replace(each.problem(), strength=10e6), "boussinesq"),
+            vehicle_of("147@0"),
+        ).load_factor
+        for each in arches
+    )
     assert at_will == pytest.approx(rough, rel=1e-6)
 
 

@@ -156,8 +156,14 @@ BRIDGES = [
 ]
 
 
-@pytest.mark.parametrize("bridge", BRIDGES)
-@pytest.mark.parametrize("mu", ["inf", "0.7"])
+@pytest.mark.parametrize(
+    ("bridge", "mu"),
+    [
+        pytest.param(bridge, mu, marks=[pytest.mark.long] if (at + rough) % 2 else [])
+        for at, bridge in enumerate(BRIDGES)
+        for rough, mu in enumerate(("0.7", "inf"))
+    ],
+)
 def test_what_falls_is_told_whatever_the_friction(bridge: tuple[str, ...], mu: str) -> None:
     """It falls at any load if its strength is too small for none, and at twice the largest."""
     span, rise, thick, count, fill, x, live, *soil = bridge
@@ -187,7 +193,7 @@ def test_what_rigid_blocks_bear_at_any_load_crushes_under_twice_the_most() -> No
         ran("check", *crushes, "--load", share * most, code=code)
 
 
-@pytest.mark.parametrize("mu", ["inf", "0.6"])
+@pytest.mark.parametrize("mu", ["inf", pytest.param("0.6", marks=pytest.mark.long)])
 def test_stone_that_is_strong_for_its_size_crushes_little(mu: str) -> None:
     """A bench model of stone: its strength is 1e5 of what its joints bear."""
     arch = ("--span", "0.12459", "--rise", "0.0484", "--voussoirs", "13", "--mu", mu)

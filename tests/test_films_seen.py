@@ -133,7 +133,7 @@ FILMED = {
     "spread": "spread_90_20_20 --over spread",
 }
 """What is simulated of each kind of film; by `direct` but for one."""
-USUAL = ("arch", "portal")
+USUAL = ("arch",)
 
 
 @pytest.mark.parametrize(

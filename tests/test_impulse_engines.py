@@ -82,7 +82,8 @@ def test_bracket_holds_the_limit(engine: str, arch: Any, tol: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("engine", "seconds"), [("pymunk", 1.0), ("pybullet", 0.5), ("mujoco", 0.1)]
+    ("engine", "seconds"),
+    [("pymunk", 1.0), ("pybullet", 0.5), pytest.param("mujoco", 0.1, marks=LONG)],
 )
 def test_same_motion_in_every_run(engine: str, seconds: float) -> None:
     arch = Arch(half_angle=math.pi / 2, eta=0.09, voussoirs=9)

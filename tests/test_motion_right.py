@@ -123,7 +123,7 @@ def test_errors_fall_as_the_step_squared(motion: known_motions.Motion) -> None:
         (known_motions.sliding(), "pymunk", False, 1e-9),
         (known_motions.sliding(), "mujoco", False, 2e-5),
         (known_motions.sliding(), "mujoco", True, 2e-5),
-        (known_motions.rocking(1), "direct", True, 2e-3),
+        pytest.param(known_motions.rocking(1), "direct", True, 2e-3, marks=LONG),
     ],
 )
 def test_every_engine_begins_on_time_and_hits_when_it_does(

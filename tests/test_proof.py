@@ -141,8 +141,16 @@ def test_a_column_of_unlike_drums_tips_where_it_must(
     assert found == (Verdict.COLLAPSES if aside > 0 else Verdict.STANDS)
 
 
-@pytest.mark.parametrize("decimals", [8, 9, 10])
-@pytest.mark.parametrize("courses", [4, 5, 6])
+@pytest.mark.parametrize(
+    ("courses", "decimals"),
+    [
+        pytest.param(
+            courses, decimals, marks=[pytest.mark.long] if courses - decimals + 4 else []
+        )
+        for courses in (4, 5, 6)
+        for decimals in (8, 9, 10)
+    ],
+)
 def test_walls_of_rounded_corners_are_answered(courses: int, decimals: int) -> None:
     """All that is told of them, too. As for any rounding the friction has to be tan 10 deg."""
     wall = rounded(bricks(courses, 6, 1.0, 0.5), 10, decimals, 0.7)

@@ -214,7 +214,12 @@ SOIL = (
 
 
 @pytest.mark.parametrize(
-    "more", [("--fill", "0.5"), ("--fill", "0.5", *AXLE), AXLE, (*FULL, *SOIL, *AXLE)]
+    "more",
+    [
+        ("--fill", "0.5", *AXLE),
+        (*FULL, *SOIL, *AXLE),
+        *(pytest.param(each, marks=pytest.mark.long) for each in (("--fill", "0.5"), AXLE)),
+    ],
 )
 def test_the_line_that_was_measured_stays_under_a_road(more: tuple[str, ...]) -> None:
     """The least thickness under fill and loads is where a check of that thickness changes."""

@@ -74,7 +74,7 @@ def test_fill_bears_what_the_arch_moves_into(
     assert (found > BRIDGE.factor(LIVE, dead) * (1 + 1e-6)) is (shares[0] > 0)
 
 
-@pytest.mark.parametrize("strength", [0.7, 5.0])
+@pytest.mark.parametrize("strength", [0.7, pytest.param(5.0, marks=pytest.mark.long)])
 def test_fill_bears_as_much_as_blocks_that_crush_need(strength: float) -> None:
     """The same programme with tangents of the law of strength, from both sides."""
     soil = across(BRIDGE, 0.33 * PASSIVE, 0.33 * PASSIVE)

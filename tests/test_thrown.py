@@ -23,6 +23,10 @@ from blocksim import Problem, Recording, Verdict, check, load_recording, simulat
 
 G = 9.81
 BOTH = pytest.mark.parametrize("method", ["direct", "pymunk"])
+DIRECT = pytest.mark.parametrize(
+    "method", ["direct", pytest.param("pymunk", marks=pytest.mark.long)]
+)
+"""Of what slides on ground that shakes `pymunk` is asked as briefly."""
 
 
 def block(
@@ -176,7 +180,7 @@ def test_a_corner_that_hits_parts_with_its_share_of_the_velocity(
     )
 
 
-@BOTH
+@DIRECT
 def test_what_is_pushed_off_stops_as_friction_says(method: str) -> None:
     gravity = 3.71
     problem = block(wide=4, mu=0.3, velocity=(2.0, 0.0)).under(gravity)
