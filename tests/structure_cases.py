@@ -39,7 +39,7 @@ def of_each_kind(found: Iterable[str]) -> list[Any]:
     return params
 
 
-def some_of(found: Iterable[str], every: int = 3) -> list[Any]:
+def some_of(found: Iterable[Any], every: int = 3) -> list[Any]:
     """Cases of which one in so many is in the usual run, and the others are long."""
     return [
         pytest.param(name, marks=[pytest.mark.long] if at % every else [])

@@ -6,11 +6,13 @@ An equilibrium exists above the least thickness: that is exact, by limit analysi
 
 import math
 from dataclasses import dataclass, field, replace
+from itertools import product
 
 import numpy as np
 import pytest
 from arches import arch_at, bracket_at, problem_at
 from images import moved
+from structure_cases import some_of
 from worlds import ContactProblem, Quality, Simulation, hold, observe
 
 from blocksim import CircularArch, Problem, Settings, Verdict, Wall, bracket, check, simulate
@@ -257,18 +259,10 @@ SLABS = [
 ]
 
 
-@pytest.mark.parametrize(
-    ("wall", "friction"),
-    [
-        pytest.param(wall, friction, marks=[pytest.mark.long] if (at + odd) % 2 else [])
-        for at, wall in enumerate(SLABS)
-        for odd, friction in enumerate((0.6375, 0.3538))
-    ],
-)
-def test_a_wall_that_ends_in_slabs_of_a_millimetre_can_rest(
-    wall: Wall, friction: float
-) -> None:
+@pytest.mark.parametrize("asked", some_of(product((0.3538, 0.6375), SLABS), every=2))
+def test_a_wall_that_ends_in_slabs_of_a_millimetre_can_rest(asked: tuple[float, Wall]) -> None:
     """So light a slab accelerates by less than half of a solution's digits tell apart."""
+    friction, wall = asked
     rough = replace(wall, friction=friction)
     limit = bracket(rough, over="tilt", tol=1e-9).limit
     assert limit is not None
