@@ -31,6 +31,8 @@ from blocksim.engines.solid.between import ROUNDED
 from blocksim.engines.solid.meeting import Points
 from blocksim.engines.solid.memory import Borne
 from blocksim.engines.solid.stepping import SolidBlocks, depth
+from blocksim.simulation.looking import Looking
+from blocksim.simulation.simulated import Simulation
 from blocksim.view.film import Film
 
 
@@ -345,6 +347,8 @@ def test_a_case_is_told_by_onset_test_and_moving_run(case: str, name: str) -> No
         ("arch_15_skew_30_aslant", 1, "mujoco"),
         ("arch_15_skew_30_crown", 0, "mujoco"),
         ("dome_8_5_pushed", 1, "mujoco"),
+        ("arch_15_skew_30_crown", 0, "pybullet"),
+        ("dome_8_5_loaded", 0, "pybullet"),
         ("dome_8_5_stands", 0, "pybullet"),
         ("tower_108_pushed", 0, "pybullet"),
     ],
@@ -395,6 +399,33 @@ def test_bullet_finds_one_contact_at_each_corner(case: str) -> None:
     apart = np.linalg.norm(found[:, None] - known, axis=2)
     assert apart.min(axis=0).max() < 2e-6
     assert apart.min(axis=1).max() < 2e-6
+
+
+@pytest.mark.parametrize("case", ["twist_6", "arch_15_skew_30_crown"])
+def test_bullet_keeps_forces_given_within_round_cones(case: str) -> None:
+    """What it ends with holds the blocks; no point rubs by more than mu times its pressure."""
+    pytest.importorskip("pybullet", exc_type=ImportError)
+    (problem, _), *_ = asked(case, 0.01)
+    _, forces = Looking(problem).equilibrium()
+    world: Any = Simulation.of(problem, "pybullet").world()
+    world.begin(forces)
+    for sweeps in (1000, 500, 1000, 2500, 5000):
+        accelerations = world.hold(sweeps)
+    assembly = problem.assembly
+    assert assembly.displacement(accelerations) < 1e-5
+    joint = np.repeat(np.arange(len(assembly.joints)), [len(j.points) for j in assembly.joints])
+    seen = list(world._space.contacts())
+    assert len(seen) == len(joint)
+    used = list[float]()
+    for contact in seen:
+        places = assembly.points / assembly.size - contact.place
+        at = joint[np.linalg.norm(places, axis=1).argmin()]
+        normal = assembly.joints[at].normal
+        push = abs(float(contact.force @ normal))
+        rubs = float(np.linalg.norm(np.cross(contact.force, normal)))
+        assert rubs <= problem.friction[at] * push + 1e-5
+        used.append(rubs / (problem.friction[at] * push))
+    assert max(used) > 0.98
 
 
 def test_what_a_point_bore_goes_on_to_the_nearest_of_the_same_two_bodies() -> None:

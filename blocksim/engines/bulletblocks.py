@@ -96,12 +96,15 @@ class Planar(Polygons):
             if abs(z) > BESIDE:
                 space.put(body, State((x, y, 0.0), turn, (right, up, 0.0), spin))
 
-    def linked(self, space: Space, reaches: Array | None = None) -> tuple[list[int], Joints]:
+    def linked(
+        self, space: Space, forces: Array | None = None, stiffness: float = 1.0
+    ) -> tuple[list[int], Joints]:
         """Create a body with links for each block, and one for the support.
 
-        `reaches`, (joints, 2): How far the sides of each joint reach into each other at its
-            ends [size].
+        `forces`, (joints, 2, 2): Whose pressures sides of joints that reach into each other
+            have at their ends, with a stiffness.
         """
+        reaches = None if forces is None else self.pressures(forces) / stiffness
         built, masses = [*self.states, self._at(SUPPORT)], partial(_masses, self.problem)
         links = _boxes(self.problem, reaches)
         bodies, ends = linked(space, links, built, masses, self.problem.friction)
@@ -135,7 +138,7 @@ class Planar(Polygons):
                 own = friction_share(problem.friction[its[0].joint]) ** 2 / mu
             placed = [
                 replace(box, centre=[*box.centre[:2], float(layers[joint])])
-                for joint, _, box in its
+                for joint, _, box, _ in its
             ]
             body = space.layered(placed, own, self._at(index), _masses(problem, index))
             for each in its:
@@ -189,7 +192,11 @@ def _masses(problem: Problem, index: int) -> list[float] | None:
 
 
 def _boxes(problem: Problem, reaches: Array | None = None) -> dict[int, list[Link]]:
-    """Return what touches on each body; see `Planar.linked`."""
+    """Return what touches on each body.
+
+    `reaches`, (joints, 2): How far the sides of each joint reach into each other at its ends
+        [size].
+    """
     assembly = problem.assembly
     found: dict[int, list[Link]] = defaultdict(list)
     for joint, sides in enumerate(sides_of(assembly)):

@@ -32,12 +32,16 @@ SOFT = 10.0
 solved [mean mass]."""
 SETTLED = 1e-3
 """Acceleration from which on blocks that are pressed stay where they have given way to [g]."""
+LEAVES = 1e-4
+"""Displacement from which on blocks do not rest, and have all friction again [size]."""
 STEP = 0.1
 """The usual one of a moving run."""
 SWEEPS = 100
 """Most sweeps of a step, for each pair of blocks."""
 ACCURACY = 1e-5
 """Error of the accelerations at which a step counts as solved [g]."""
+RESTING = 3e-5
+"""The same of blocks that rest with friction within rectangles, whose steps are short [g]."""
 SHARE = 1e-4
 """The same as a share of the velocities, once blocks move fast."""
 RELAXATION = 3.0
@@ -73,7 +77,8 @@ class Moving:
         self._space.find_contacts()
         self._deepest = self._space.overlap()
         self._space.pull(parts.problem.gravity)
-        self._balance = parts.balance(self.poses())
+        self._start, self._beyond = self.poses(), None
+        self._balance = parts.balance(self._start)
 
     def _let_go(self) -> None:
         """Build anew for motion, where bodies without links will do."""
@@ -83,6 +88,14 @@ class Moving:
             self._bodies, self._joints = self._parts.layered(self._space)
             self._short, sweeps, self._held = self._settings.step, self._held, 0
             self.hold(sweeps)
+
+    def _watch(self) -> None:
+        """Look whether friction has stayed within its cones; give it all where blocks move."""
+        if float(self._parts.assembly.displacement(self.poses() - self._start)) > LEAVES:
+            self._space.rectangles.widen()
+            self._beyond = None
+        else:
+            self._beyond = max(self._beyond or 0.0, self._space.rectangles.beyond() or 0.0)
 
     def _lifts(self) -> bool:
         """Tell whether in the next step a corner may lift off, on its arc, by what overlaps.
@@ -110,14 +123,14 @@ class Moving:
 
         Bullet keeps no impulses. So joints are springs whose faces reach into each other by
         what it takes; they are so soft, for the step in which they are solved, that pressures
-        stay near what is given. Friction is left to Bullet.
+        stay near what is given. Friction is left to Bullet, in space within rectangles.
         """
         pressures = self._parts.pressures(forces)
         stiffness = max(1.0, float(pressures.max())) / self._parts.pressed
         self._short, self._held = math.sqrt(SOFT / stiffness), 0
         self._space.clear()
         self._space.pull(self._parts.problem.gravity)
-        self._bodies, self._joints = self._parts.linked(self._space, pressures / stiffness)
+        self._bodies, self._joints = self._parts.linked(self._space, forces, stiffness)
         for body, link in {(body, link) for body, _, link, _ in self._joints}:
             # A pair's stiffness is half of either's.
             self._space.soften(body, link, 2 * stiffness)
@@ -140,7 +153,7 @@ class Moving:
             else:
                 self._space.put(body, state)
         self._gains = self._settings.step * self._turning(accelerations)
-        self._rate = accelerations
+        self._rate, self._beyond = accelerations, self._space.rectangles.beyond()
         return accelerations
 
     def advance(self, steps: int) -> None:
@@ -169,12 +182,15 @@ class Moving:
                 # Contacts that are open by a hair are found anew only once they have closed.
                 parts = FINEST
             step = self._settings.step / parts
-            change = max(ACCURACY * step, SHARE * speed) / (RELAXATION * self._pairs)
+            accuracy = ACCURACY if self._beyond is None else RESTING
+            change = max(accuracy * step, SHARE * speed) / (RELAXATION * self._pairs)
             self._space.solve_by(step, self._settings.sweeps, change=change)
             before = self._stagger(step)
             for _ in range(parts - 1):
                 self._step()
             self._last_step()
+            if self._beyond is not None:
+                self._watch()
             gained = self._velocities() - before
             self._gains, self._rate = self._turning(gained), gained / (parts * step)
 
@@ -234,4 +250,6 @@ class Moving:
 
     def quality(self) -> Quality:
         """Tell how deep blocks have overlapped, as built and once they meet others."""
-        return Quality(penetration=self._deepest, gain=self._balance.gain)
+        return Quality(
+            penetration=self._deepest, gain=self._balance.gain, residual=self._beyond
+        )

@@ -21,11 +21,15 @@ touches on the other, likewise."""
 
 
 class Link(NamedTuple):
-    """What touches on a body: a joint, 1 if on `after` and else -1, and a box."""
+    """What touches on a body: a joint, 1 if on `after` and else -1, and a box.
+
+    `rubs`, (2,): Sides of the rectangle its friction is held within; None for a cone.
+    """
 
     joint: int
     sense: float
     box: Box
+    rubs: Array | None = None
 
 
 def linked(
@@ -50,6 +54,9 @@ def linked(
         body = space.linked([each.box for each in its], shares, state, masses(index))
         for link, each in enumerate(its):
             ends[each.joint].append((body, link, each.sense))
+            if each.rubs is not None:
+                share = friction_share(friction[each.joint])
+                space.rectangles.narrow(body, link, share**2, each.rubs)
         bodies.append(body)
     return bodies, ends
 

@@ -1,9 +1,9 @@
 """Blocks in space as bodies of a Bullet space: the parts that `bulletmotion` moves.
 
-- At each corner of a joint a box stands on one of its corners, and a thin box is the plate on
+- At each corner of a joint a box stands on one of its corners, and a thin box is its plate on
   the other block: Bullet finds that one point of contact exactly. Hulls it rounds.
 - Each is a link of its block, touches its partner only, and has the joint's friction. Bullet's
-  friction of links lies within the round cone.
+  friction of links lies within the round cone; with forces given within rectangles in it.
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ import numpy as np
 from blocksim.blocks.assembly import SPATIAL, SUPPORT, Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
-from blocksim.common.later import transform
+from blocksim.blocks.space.points import JointPoints
+from blocksim.common.later import sparse_linalg, transform
 from blocksim.engines.boxes import UNTURNED, Box, Frame
+from blocksim.engines.bulletfriction import across, rectangle
 from blocksim.engines.bulletparts import Joints, Link, let_go, linked, met
 from blocksim.engines.bulletspace import NOTHING, SLOP, Space, State, friction_share
 from blocksim.engines.polyhedra import Polyhedra
@@ -45,6 +47,7 @@ class Spatial(Polyhedra):
 
     def __init__(self, problem: Problem[SpatialAssembly]) -> None:
         super().__init__(problem)
+        self._points = JointPoints(problem)
         self.frame = Frame(range(SPATIAL), self.quaternions)
         self.reach: Array = self.bodies.reach
         centres = self.bodies.built.centres.tolist()
@@ -68,17 +71,17 @@ class Spatial(Polyhedra):
         """Refuse: friction of bodies without links lies within pyramids."""
         raise NotImplementedError
 
-    def linked(self, space: Space, reaches: Array | None = None) -> tuple[list[int], Joints]:
+    def linked(
+        self, space: Space, forces: Array | None = None, stiffness: float = 1.0
+    ) -> tuple[list[int], Joints]:
         """Create a body with links for each block, and one for all supports.
 
-        `reaches`, (points,): How far each point reaches into its plate [size].
+        `forces`, (points, 3): Whose pressures points have that reach into their plates, with a
+            stiffness, and that are within the rectangles in which friction is held.
         """
-        built, friction = [*self.states, UNMOVED], self.problem.friction
-        bodies, ends = linked(space, self._links(reaches), built, self._masses, friction)
-        # What is not the plate's body touches the plate.
-        for touch in self.touches:
-            plate = bodies[touch.plate]
-            ends[touch.joint].sort(key=lambda each: each[0] != plate)
+        built, friction = [*self.states, UNMOVED], self._points.friction
+        links = self._links(forces, stiffness)
+        bodies, ends = linked(space, links, built, self._masses, friction)
         return bodies[:-1], met(space, ends)
 
     def _masses(self, index: int) -> list[float] | None:
@@ -88,20 +91,55 @@ class Spatial(Polyhedra):
         mass, _, _, *moments = self.bodies.inertia[index].tolist()
         return [mass, *moments]
 
-    def _links(self, reaches: Array | None) -> dict[int, list[Link]]:
-        """Return what touches on each body; see `linked`."""
+    def _links(self, forces: Array | None, stiffness: float) -> dict[int, list[Link]]:
+        """Return what touches on each body, by points of joints; see `linked`."""
         found: dict[int, list[Link]] = defaultdict(list)
-        for touch, ways in zip(self.touches, self.at_joints(reaches), strict=True):
+        known = np.zeros((len(self._points.joint), 3))
+        if forces is not None:
+            known = self._balanced(forces, stiffness)
+        ways, rubbing = (self.pressures(known) / stiffness).tolist(), self._rubbing(known)
+        point = 0
+        for touch in self.touches:
             normal = touch.normal
             middle = touch.places.mean(axis=0) + (SLOP / 2 - touch.half[2]) * normal
-            plate = self._box(touch.plate, touch.half, middle, touch.axes)
-            found[touch.plate].append(Link(touch.joint, -touch.sign, plate))
             side, stands = CORNER * touch.spread, _standing(normal)
-            for place, way in zip(touch.places, ways.tolist(), strict=True):
-                centre = place + (side * math.sqrt(3.0) / 2 - SLOP / 2 - way) * normal
-                box = self._box(touch.corners, [side / 2] * 3, centre, stands)
-                found[touch.corners].append(Link(touch.joint, touch.sign, box))
+            seen = across(normal)
+            axes = np.vstack([seen, normal]).T
+            plate = self._box(touch.plate, touch.half, middle, axes)
+            for place in touch.places:
+                rubs = None if forces is None else rectangle(seen @ rubbing[point])
+                deep = side * math.sqrt(3.0) / 2 - SLOP / 2 - ways[point]
+                box = self._box(touch.corners, [side / 2] * 3, place + deep * normal, stands)
+                found[touch.plate].append(Link(point, -touch.sign, plate, rubs))
+                found[touch.corners].append(Link(point, touch.sign, box))
+                point += 1
         return found
+
+    def _rubbing(self, forces: Array) -> Array:
+        """Return the part of forces at points that is across their normals, (points, 3)."""
+        axes = self._points.axes[self._points.joint]
+        return np.einsum("pk,pkx->px", forces[:, 1:], axes[:, 1:])
+
+    def _balanced(self, forces: Array, stiffness: float) -> Array:
+        """Return forces (points, 3) that balance as Bullet lets them act.
+
+        Where a corner reaches into its plate, friction acts on its block at the corner, and on
+        the other where the plate is. What moment is left is taken up by small changes, each in
+        proportion to its point's pressure.
+        """
+        pressures = self.pressures(forces)
+        owners = np.concatenate([np.full(len(t.places), t.corners) for t in self.touches])
+        normals = np.concatenate([np.tile(t.normal, (len(t.places), 1)) for t in self.touches])
+        signs = np.concatenate([np.full(len(t.places), t.sign) for t in self.touches])
+        arms = normals * (-signs * pressures / stiffness)[:, None]
+        moments = np.cross(arms, self._rubbing(forces))
+        left = np.zeros((len(self.states), 6))
+        moves = owners != SUPPORT
+        np.add.at(left[:, 3:], owners[moves], moments[moves])
+        weights = np.repeat(pressures, 3)
+        scaled = self._points.matrix.multiply(weights).tocsr()
+        found = sparse_linalg.lsqr(scaled, -left.ravel(), atol=1e-12, btol=1e-12)[0]
+        return forces + (weights * found).reshape(-1, 3)
 
     def _box(self, index: int, half: list[float], centre: Array, axes: Array) -> Box:
         """Return a box in the frame of a body."""

@@ -23,6 +23,7 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.engines.base import Library
 from blocksim.engines.boxes import Box, Frame
+from blocksim.engines.bulletfriction import Rectangles
 
 bullet: Any = Library("pybullet", quiet=True)
 
@@ -86,6 +87,7 @@ class Space:
 
     def __init__(self, frame: Frame, breaking: float) -> None:
         self.frame, self._client = frame, _Client()
+        self.rectangles = Rectangles(self._client)
         self._begin(breaking)
 
     def _begin(self, breaking: float) -> None:
@@ -100,6 +102,7 @@ class Space:
             deterministicOverlappingPairs=1,
             enableFileCaching=0,
         )
+        self.rectangles.forget()
 
     def _set(self, **parameters: float) -> None:
         # All spaces share one breaking threshold: each sets its own before it steps.

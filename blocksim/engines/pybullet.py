@@ -6,6 +6,7 @@ space, and how they are moved in `bulletmotion`.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib.metadata import version
 
 import numpy as np
@@ -32,7 +33,7 @@ UNAIDED = 0.1
 springs on a short joint give way too easily, and never come to rest."""
 MOST_WORK = 2e8
 """Sweeps of a step times blocks from which a step of heaps and walls takes minutes."""
-SWEEPS_IN_SPACE, HOLD_IN_SPACE, UNAIDED_IN_SPACE = 1000, 300_000, 30_000
+SWEEPS_IN_SPACE, HOLD_IN_SPACE, UNAIDED_IN_SPACE = 1000, 300_000, 10_000
 """Most sweeps in space: of a step for each block, of the onset test, and of it unaided."""
 STILL = 1e-5
 NOISE = 1e-6
@@ -80,7 +81,7 @@ def _pairs(assembly: Assembly) -> float:
 def rule_in_space(assembly: SpatialAssembly) -> Settings:
     """Choose sweeps for blocks in space, which are held by many joints: fewer for each pair."""
     sweeps = round(SWEEPS_IN_SPACE * (len(assembly.blocks) + 1))
-    return _settings(sweeps, HOLD_IN_SPACE, UNAIDED_IN_SPACE)
+    return replace(_settings(sweeps, HOLD_IN_SPACE, UNAIDED_IN_SPACE), residual=STILL)
 
 
 def blocks_in_space(problem: Problem[SpatialAssembly], settings: Settings) -> World:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -88,7 +89,6 @@ class Looking:
 
     def trusts(self, world: World, settings: Settings, largest: float) -> bool:
         """Tell whether contacts were solved well enough for accelerations of that size."""
-        residual = world.quality().residual
-        if not self._in_space or residual is None:
-            return trusted(world, settings)
-        return residual <= max(SURE * largest, settings.still)
+        if self._in_space and world.quality().residual is not None:
+            settings = replace(settings, residual=max(SURE * largest, settings.still))
+        return trusted(world, settings)
