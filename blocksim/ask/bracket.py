@@ -104,7 +104,7 @@ class Bracket(Shown, Generic[Blocks]):
 
         Nearer than 1e-6 of its value; empty where one of them is not proved.
         """
-        found = [proofs_beside(at, value, rises=rises) for at, value, rises in self.changes]
+        found = [proofs_beside(change) for change in self.changes]
         return tuple(proof for each in found for proof in each) if all(found) else ()
 
     @property

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from blocksim.ask.families import Family
 from blocksim.blocks.problem import Problem
@@ -17,8 +17,21 @@ Within = tuple[float, float]
 Ask = Callable[[float, bool], "Search"]
 """From a value of limit analysis, and whether it stands above it."""
 
-Change = tuple[Callable[[float], Problem], float, bool]
-"""Value to problem, the value of the change, and whether it stands above it."""
+
+class Change(NamedTuple):
+    """A change from standing to falling that limit analysis knows.
+
+    `at`: Value to problem.
+    `value`: The value of the change.
+    `rises`: Whether it stands above it.
+    `beside`: Equilibria that were asked for to both sides, that which falls first; empty where
+        they are still to be asked for.
+    """
+
+    at: Callable[[float], Problem[Any]]
+    value: float
+    rises: bool
+    beside: tuple[Any, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,7 +40,7 @@ class End:
 
     `limit`: The value of limit analysis.
     `falls`, `stands`: The nearest values that collapsed and that stood.
-    `confirmed`: As of `blocksim.ask.bracket.Search`.
+    `confirmed`: As of `blocksim.ask.searches.Search`.
     """
 
     limit: float
@@ -82,11 +95,18 @@ def neighbourhood(family: Family[Any], value: float) -> Within:
     )
 
 
-def changes_of(family: Family[Any], intervals: tuple[Stands, ...]) -> tuple[Change, ...]:
-    """Return all changes that limit analysis knows."""
+def changes_of(
+    family: Family[Any], intervals: tuple[Stands, ...], first: Search
+) -> tuple[Change, ...]:
+    """Return all changes that limit analysis knows; what came of the first goes with it."""
     ends = (
         (end, above)
         for each in intervals
         for end, above in ((each.low, True), (each.high, False))
     )
-    return tuple((family.at, end.limit, above) for end, above in ends if end is not None)
+    found: list[Change] = []
+    for end, above in ends:
+        if end is not None:
+            known = (end.falls, end.stands) == (first.falls, first.stands)
+            found.append(Change(family.at, end.limit, above, first.beside if known else ()))
+    return tuple(found)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from blocksim.ask.ends import Ask, Within, changes_of, neighbourhood, tried_ends
+from blocksim.ask.ends import Ask, Change, Within, changes_of, neighbourhood, tried_ends
 from blocksim.ask.families import Family
 from blocksim.ask.methods import choose, merged, reduces
 from blocksim.ask.options import Taken
@@ -90,7 +90,7 @@ def by_threshold(problem: Problem, over: str, threshold: Threshold, given: Taken
         facts = threshold.facts(
             low=found.falls, high=found.stands, method=chosen.name, seen=found.collapse
         )
-    known = chosen.name == "limit" and threshold.exact
+    exact = threshold.exact if chosen.name == "limit" else None
     return Found(
         found,
         chosen,
@@ -104,7 +104,7 @@ def by_threshold(problem: Problem, over: str, threshold: Threshold, given: Taken
             "limit": threshold.value(threshold.exact),
             "problem": problem,
             "arch": facts,
-            "changes": ((threshold.problem, threshold.exact, True),) if known else (),
+            "changes": (Change(threshold.problem, exact, True),) if exact else (),
         },
     )
 
@@ -171,7 +171,7 @@ def by_family(family: Family[Any], within: Within | None, given: Taken) -> Found
             "problem": probe,
             "events": None if family.spreading is None else family.spreading.events,
             "intervals": intervals,
-            "changes": changes_of(family, intervals or ()) if proves else (),
+            "changes": changes_of(family, intervals or (), found) if proves else (),
         },
     )
 

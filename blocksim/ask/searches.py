@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from functools import lru_cache
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from blocksim.ask.ends import Within
+from blocksim.ask.ends import Change, Within
 from blocksim.ask.families import Family
 from blocksim.ask.options import Taken
 from blocksim.ask.search import Answer, Bisection
 from blocksim.ask.statics import fewer
-from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress
 from blocksim.limit import equilibrium
 from blocksim.limit.statics import exists
@@ -21,7 +19,6 @@ from blocksim.simulation.verdict import Verdict
 
 if TYPE_CHECKING:
     from blocksim.ask.spread import Spreading
-    from blocksim.blocks.problem import Problem
     from blocksim.engines.base import Engine
     from blocksim.limit.proof import Proof
     from blocksim.simulation.observation import Held, Observation
@@ -53,6 +50,7 @@ class Search:
         reduction merged and had to split again; None for static methods, but for blocks that
         planes of symmetry left.
     `collapse`: By an engine, what was seen at the value that collapsed.
+    `beside`: In space, equilibria by limit analysis at the ends, that which falls first.
     """
 
     falls: float | None = None
@@ -64,6 +62,7 @@ class Search:
     blocks: int | None = None
     splits: int | None = None
     collapse: Observation | None = None
+    beside: tuple[Any, ...] = field(default=(), repr=False)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -178,26 +177,23 @@ def shaken(family: Family[Any], engine: Engine, sought: Sought) -> Search:
     )
 
 
-def proofs_beside(
-    at: Callable[[float], Problem], value: float, *, rises: bool
-) -> tuple[Proof, ...]:
-    """Prove that it falls and stands a little to both sides of a value; empty if not proved.
-
-    `rises`: Whether it stands above the value.
-    """
-    for sure in SURE:
-        ends = value * (1 - sure), value * (1 + sure)
-        found = [_rest(at, end, True).proof for end in (ends if rises else ends[::-1])]
-        proofs = tuple(each for each in found if each is not None)
+def proofs_beside(change: Change) -> tuple[Proof, ...]:
+    """Prove that it falls and stands a little to both sides of a value; empty if not proved."""
+    for beside in _beside(change):
+        proofs = tuple(each.proof for each in beside if each.proof is not None)
         if [each.claim for each in proofs] == ["collapses", "stands"]:
             return proofs
     return ()
 
 
-@lru_cache(maxsize=2 * len(SURE))
-def _rest(at: Callable[[float], Problem], value: float, reduce: bool) -> Any:
-    """Return the equilibrium at a value, which is asked for its verdict and for its proof."""
-    return equilibrium(at(value), reduce=reduce)
+def _beside(change: Change) -> Iterator[Sequence[Any]]:
+    """Go through equilibria to both sides of a change, those that are known first."""
+    at, value, rises, beside = change
+    if beside:
+        yield beside
+    for sure in SURE:
+        ends = value * (1 - sure), value * (1 + sure)
+        yield [equilibrium(at(end)) for end in (ends if rises else ends[::-1])]
 
 
 def by_programmes(
@@ -221,13 +217,16 @@ def by_programmes(
     told: list[bool | None] = []
     falls = stands = exact
     runs, blocks = 0, None
+    beside: tuple[Any, ...] = ()
     for sure in (*SURE, *(by for by in ROUGH if spatial and by <= tol)):
         ends = exact * (1 - sure), exact * (1 + sure)
         falls, stands = ends if rises else ends[::-1]
         runs += 2
         if spatial:
-            static = [_rest(family.at, end, reduce) for end in (falls, stands)]
-            told, blocks = [each.exists for each in static], fewer(family.problem, static[1])
+            beside = tuple(
+                equilibrium(family.at(end), reduce=reduce) for end in (falls, stands)
+            )
+            told, blocks = [each.exists for each in beside], fewer(family.problem, beside[1])
         else:
             told = [exists(family.at(end)) for end in (falls, stands)]
         if told == [False, True]:
@@ -242,6 +241,7 @@ def by_programmes(
         runs=runs,
         reason=f"limit analysis; {said}",
         blocks=blocks,
+        beside=beside,
     )
 
 
