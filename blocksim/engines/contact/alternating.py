@@ -33,7 +33,8 @@ SOLVED, ROUND_OFF = 1e-10, 1e-13
 
 
 def alternated(step: Step, forces: Array) -> Iterator[Answer]:
-    """Give what springs make of forces on the way of alternating directions, begun at some."""
+    """Give what springs make of forces, then of those on the way of alternating directions."""
+    yield _followed(step, forces)
     solve = step.bands.factored(step.rows, np.full((1, 4), SOFT))
     if solve is None:
         return
@@ -45,10 +46,10 @@ def alternated(step: Step, forces: Array) -> Iterator[Answer]:
         x = solve(step.free + step.bands.pull(step.rows, right))
         pushed = pushed + BEYOND * (forces - SOFT * step.velocities(x) - pushed)
         if turn % PAUSE == 0:
-            yield followed(step, _lawful(step, pushed))
+            yield _followed(step, _lawful(step, pushed))
 
 
-def followed(step: Step, forces: Array) -> Answer:
+def _followed(step: Step, forces: Array) -> Answer:
     """Let springs follow forces, stiffer in turn, as long as they come nearer to the law."""
     best, systems = _answer(step, forces, forces), 0
     for stiffness in STIFFER:

@@ -9,18 +9,25 @@ a billionth from the limit, and where two contacts of a joint share friction as 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.cones import Cones
-from blocksim.engines.contact.step import Step, stiffness_at
+from blocksim.engines.contact.coulomb import Friction
+from blocksim.engines.contact.interior import central_path
+from blocksim.engines.contact.step import Answer, Step, stiffness_at
 
 MOST_ROUNDS, MOST_NEWTON = 20, 100
 BALANCED, ROUND_OFF = 1e-11, 1e-14
 """Forces out of balance that are nothing: in mean weights, and over the stiffest forces."""
 STALLED = 30.0
 """Multiple of that below which an imbalance that no longer halves is round-off."""
+MOST_PARTINGS, PARTED = 5, 1e-8
+"""How often steep friction is taken from joints that part; what counts as parting [g], and as
+friction [mean weights]."""
 
 
 def augmented_lagrangian(
@@ -58,6 +65,26 @@ def augmented_lagrangian(
             break
         last_change = change
     return x, pressed, systems
+
+
+def parted(step: Step, answer: Answer) -> Iterator[Answer]:
+    """Take friction from joints that hold it across a gap, until none does.
+
+    Steep friction that dilates needs no pressure. So it goes on where joints part, which
+    Coulomb's may not.
+    """
+    for _ in range(MOST_PARTINGS):
+        least = step.velocities(answer.x)[:, :2].min(axis=1, keepdims=True)
+        rubs = np.abs(answer.forces[:, 2:]).max(axis=1, keepdims=True)
+        parts = step.friction.steep & (np.minimum(least, rubs) > PARTED)
+        if not parts.any():
+            return
+        step = replace(step, friction=Friction(np.where(parts, 0.0, step.friction.mu)))
+        cones = Cones.of(step)
+        x, pressed, systems = central_path(step, cones, dilates=True)
+        x, pressed, more = augmented_lagrangian(step, cones, x, pressed)
+        answer = cones.answer(step, x, pressed, systems + more)
+        yield answer
 
 
 def _to_the_least(

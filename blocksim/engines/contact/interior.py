@@ -27,11 +27,15 @@ from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.step import Step
 
-CLOSE = 1e-12
-"""Mean product of force and velocity at the edges at which the contacts tell what they do."""
+CLOSE, CLOSEST = 1e-12, 1e-17
+"""Mean product of force and velocity at the edges at which the contacts tell what they do, and
+at which they need not, as forces and velocities are known."""
+YIELD = 1e-10
+"""Yield of contacts over their force. Faces that do not quite fit contradict each other: where
+nothing yields forces grow without end, and none but huge ones solve a step."""
 MOST_STEPS = 80
-BOLD = 0.995
-"""Least share of the way to the bounds that a step goes."""
+BOLD, BOLDEST = 0.995, 1 - 1e-12
+"""Least and largest share of the way to the bounds that a step goes."""
 START, STEEP_START = (0.1, 3.0), (1.0, 1.0)
 """Least room [g] and forces [mean weights] to begin with, at rest. The first are about those of
 what stands, and save a third of the systems; steep friction would be wedged by them."""
@@ -39,18 +43,24 @@ SHORTEST = 1e-4
 """Least part of a step that counts as progress."""
 SMOOTH = 0.01
 """Smoothing of slip, over the root of that product."""
-CAREFUL = 0.1, 0.7
+CAREFUL = 0.1, 0.7, 0.3
 """Least part of the product that a step with slip aims at: at first, then where that leads
-nowhere."""
+nowhere, and in motion."""
 
 
 def central_path(
-    step: Step, cones: Cones, *, dilates: bool, careful: float = CAREFUL[0]
+    step: Step,
+    cones: Cones,
+    *,
+    dilates: bool,
+    careful: float = CAREFUL[0],
+    close: float = CLOSE,
 ) -> tuple[Array, Array, int]:
     """Follow the central path.
 
     `dilates`: Whether friction does; Coulomb's must not be steep.
     `careful`: Least part of the product that a step aims at, where friction does not dilate.
+    `close`: Product that ends the path.
     Returns `x`, (3 blocks,): Accelerations.
     Returns `pressed`, (joints, 4 or 6): Forces along the edges.
     Returns `systems`: Banded systems factored.
@@ -64,13 +74,13 @@ def central_path(
     least, pressed = STEEP_START if step.friction.some_steep else START
     room: Array = np.maximum(np.abs(apart), least)
     # What is far open presses little: all products begin alike.
-    short, forces = apart - room, least * pressed / room
-    count = 0
+    forces: Array = least * pressed / room
+    short, count = apart + YIELD * forces - room, 0
     for count in range(MOST_STEPS):  # noqa: B007
         product = float(np.vdot(room, forces)) / room.size
-        if product < CLOSE:
+        if product < close:
             break
-        solve = bands.factored(edges, forces / room, turned)
+        solve = bands.factored(edges, forces / (room + YIELD * forces), turned)
         if solve is None:
             break
         toward = _toward(solve, bands, edges, turned, free - x, (room, short, forces))
@@ -80,9 +90,9 @@ def central_path(
         aim = max((after / product) ** 3, 0.0 if dilates else careful) * product
         way, wider, more = toward((aim - wider * more) / room)
         # Near its end the path is straight.
-        bold = max(BOLD, 1 - product)
+        bold = min(max(BOLD, 1 - product), BOLDEST)
         length = min(1.0, bold * _length(room, wider, forces, more))
-        if not length >= SHORTEST:
+        if not (length >= SHORTEST and np.isfinite(way).all()):
             break
         x = x + length * way
         room, forces = room + length * wider, forces + length * more
@@ -90,7 +100,7 @@ def central_path(
             smooth = SMOOTH * math.sqrt(float(np.vdot(room, forces)) / room.size)
             lift, turned = _lift(step, x, cones, smooth)
         # Not as it follows from the last one: round-off would add up where friction is steep.
-        short = bands.along(edges, x) + offset + lift - room
+        short = bands.along(edges, x) + offset + lift + YIELD * forces - room
     return x, forces, count
 
 
@@ -104,13 +114,15 @@ def _toward(
 ) -> Callable[[Array | float], tuple[Array, Array, Array]]:
     """Return what changes x, room and forces to products of so much, over the room."""
     room, short, forces = at
-    weight: Array = forces / room
-    seen, shortage = edges if turned is None else turned, weight * short
+    weight: Array = forces / (room + YIELD * forces)
+    seen, share = edges if turned is None else turned, 1 - YIELD * weight
 
     def found(target: Array | float) -> tuple[Array, Array, Array]:
-        way = solve(left + bands.pull(edges, target - shortage))
-        wider = bands.along(seen, way) + short
-        return way, wider, target - forces - weight * wider
+        more: Array = share * (target - forces) - weight * short
+        way = solve(left + bands.pull(edges, forces + more))
+        wider = bands.along(seen, way)
+        more = more - weight * wider
+        return way, wider + short + YIELD * more, more
 
     return found
 

@@ -16,13 +16,12 @@ What each contact does is guessed, and mended until all forces and velocities ag
 - from nothing, the solution for friction that dilates, to half of its digits (`interior.py`),
   then to the last (`associated.py`): of the two answers that Coulomb's may have, rest and
   motion, that is rest if there is any;
-- the end of an interior-point method for Coulomb friction, steep one less, and a short path;
-- of friction that is not steep, the end of that method with shorter steps; then in motion
-  solutions for friction that dilates with slips found before (`averaged.py`), and short paths
-  from there; from nothing what springs make of the way of alternating directions
-  (`alternating.py`), and a short path from the best of these;
-- the end of a path from all contacts apart (`path_following.py`), of steep friction with the
-  forces found so far first.
+- the end of an interior-point method for Coulomb friction, steep one less;
+- of friction that is not steep, in motion solutions for friction that dilates with slips found
+  before (`averaged.py`), and a short path from their end; from nothing short paths, and what
+  springs make of the way of alternating directions (`alternating.py`);
+- the end of a path from all contacts apart (`path_following.py`), in motion only where half a
+  step is no way out, of steep friction with the forces found so far first.
 """
 
 from __future__ import annotations
@@ -36,13 +35,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.active_set import by_active_set
-from blocksim.engines.contact.alternating import alternated, followed
-from blocksim.engines.contact.associated import augmented_lagrangian
+from blocksim.engines.contact.alternating import alternated
+from blocksim.engines.contact.associated import augmented_lagrangian, parted
 from blocksim.engines.contact.averaged import averaged
 from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.coulomb import Contacts, Friction
-from blocksim.engines.contact.interior import CAREFUL, central_path
+from blocksim.engines.contact.interior import CAREFUL, CLOSE, CLOSEST, central_path
 from blocksim.engines.contact.path_following import (
     LAST_PIECES,
     NEAREST_PIECES,
@@ -64,9 +63,6 @@ SOLVED = 1e-9
 """Residual of a solution."""
 TAME = 10.0, 3.0
 """Friction that is taken in place of steep one, for guesses of what contacts do."""
-MOST_PARTINGS, PARTED = 5, 1e-8
-"""How often steep friction is taken from joints that part; what counts as parting [g], and as
-friction [mean weights]."""
 ENOUGH = 3e-8
 """Residual for which no path is followed: of a moving step, because once they have moved joints
 may not close any better; from nothing if contacts are told, as a path tells them no better."""
@@ -128,6 +124,8 @@ class ContactProblem:
         free: Array,
         start: Solution | None = None,
         precision: float = EXACT,
+        *,
+        patient: bool = False,
     ) -> Solution:
         """Solve one step.
 
@@ -137,6 +135,7 @@ class ContactProblem:
         `free`, (blocks, 3): Accelerations without contact (f).
         `start`: Of a similar step.
         `precision`: Yield of contacts at which the step counts as solved [g].
+        `patient`: Whether a path is followed from all contacts apart, after a similar step too.
         """
         if not len(rates):
             # Nothing touches anything.
@@ -155,18 +154,12 @@ class ContactProblem:
             friction=self.friction,
         )
         with self.bands.one_thread():
-            return self._solved(step, start, precision)
-
-    def _solved(self, step: Step, start: Solution | None, precision: float) -> Solution:
-        """Take guesses in turn until one leads to a solution."""
-        tried = _Tried(step, precision, moves=start is not None)
-        guesses = (
-            self._from_nothing(step, tried) if start is None else self._from(step, start, tried)
-        )
-        for guess in guesses:
-            if guess and tried.settle(guess):
-                break
-        best = tried.best
+            tried = _Tried(step, precision, moves=start is not None, patient=patient)
+            guesses = self._from(step, start, tried) if start else _from_nothing(step, tried)
+            for guess in guesses:
+                if guess and tried.settle(guess):
+                    break
+            best = tried.best
         # From nothing an answer close by may be that of another arch.
         close = SURE * min(1.0, float(np.abs(best.x).max()))
         sure = best.is_settled or start is not None or best.residual <= close
@@ -188,41 +181,13 @@ class ContactProblem:
         yield path_from_guess(step, guess, LAST_PIECES)
         for tame in _tamed(step):
             if not tried.is_enough:
-                yield (guess := _coulomb(tame))
-        if not tried.is_enough:
-            yield path_from_guess(step, guess, LAST_PIECES)
-        yield from _at_last(step, tried)
-
-    def _from_nothing(self, step: Step, tried: _Tried) -> Iterator[Answer | None]:
-        """Give what contacts may do at rest, the likeliest and cheapest first."""
-        cones = Cones.of(step)
-        x, pressed, systems = central_path(step, cones, dilates=True)
-        first, steep = cones.answer(step, x, pressed, systems), step.friction.some_steep
-        tried.may_rest = float(np.abs(x).max()) < NEAR_REST
-        if not steep:
-            yield first
-        if steep or tried.may_rest:
-            x, pressed, systems = augmented_lagrangian(step, cones, x, pressed)
-            answer = cones.answer(step, x, pressed, systems)
-            yield _at_rest(step, answer)
-            tried.may_rest = False
-            if steep:
-                yield first
-            yield answer
-            yield from _parted(step, answer)
-        last = first
-        for tame in _tamed(step):
-            yield (last := _coulomb(tame))
-        if not tried.is_enough:
-            yield path_from_guess(step, last, NEAREST_PIECES)
-        if not tried.is_enough:
-            yield path_from_guess(step, first)
-        if not steep:
-            yield from _at_last(step, tried)
-            return
-        if not tried.is_enough:
-            yield path_from_apart(step, last.forces)
-        yield path_from_apart(step)
+                yield (guess := _coulomb(tame, CAREFUL[2], CLOSEST))
+        if not step.friction.some_steep:
+            for begun in (guess.x, x):
+                if not tried.is_enough:
+                    yield from _by_slips(step, tried, begun)
+        if (tried.patient or step.friction.some_steep) and not tried.is_enough:
+            yield path_from_apart(step)
 
 
 class _Tried:
@@ -230,11 +195,13 @@ class _Tried:
 
     `precision`: Yield of contacts at which it counts as solved [g].
     `moves`: Whether the last step is known.
+    `patient`: Whether a long path is followed all the same.
     `may_rest`: Whether a motion is no solution yet, as rest has to be looked for first.
     """
 
-    def __init__(self, step: Step, precision: float, *, moves: bool) -> None:
-        self._step, self._precision, self.moves = step, precision, moves
+    def __init__(self, step: Step, precision: float, *, moves: bool, patient: bool) -> None:
+        self._step, self._precision = step, precision
+        self.moves, self.patient = moves, patient
         self._answers: list[Answer] = []
         self.may_rest = False
         self.systems = 0
@@ -279,6 +246,38 @@ class _Tried:
         return answer.is_settled and answer.residual <= SOLVED and not moves
 
 
+def _from_nothing(step: Step, tried: _Tried) -> Iterator[Answer | None]:
+    """Give what contacts may do at rest, the likeliest and cheapest first."""
+    cones = Cones.of(step)
+    x, pressed, systems = central_path(step, cones, dilates=True)
+    first, steep = cones.answer(step, x, pressed, systems), step.friction.some_steep
+    tried.may_rest = float(np.abs(x).max()) < NEAR_REST
+    if not steep:
+        yield first
+    if steep or tried.may_rest:
+        x, pressed, systems = augmented_lagrangian(step, cones, x, pressed)
+        answer = cones.answer(step, x, pressed, systems)
+        yield _at_rest(step, answer)
+        tried.may_rest = False
+        if steep:
+            yield first
+        yield answer
+        yield from parted(step, answer)
+    last = first
+    for tame in _tamed(step):
+        yield (last := _coulomb(tame))
+    if not tried.is_enough:
+        yield path_from_guess(step, last, NEAREST_PIECES)
+    if not tried.is_enough:
+        yield path_from_guess(step, first)
+    if not steep:
+        yield from _at_last(step, tried)
+        return
+    if not tried.is_enough:
+        yield path_from_apart(step, last.forces)
+    yield path_from_apart(step)
+
+
 def _at_rest(step: Step, guess: Answer) -> Answer | None:
     """Return a guess as the solution if it is rest.
 
@@ -296,55 +295,33 @@ def _tamed(step: Step) -> Iterator[Step]:
         yield replace(step, friction=step.friction.at_most(most))
 
 
-def _coulomb(step: Step, careful: float = CAREFUL[0]) -> Answer:
+def _coulomb(step: Step, careful: float = CAREFUL[0], close: float = CLOSE) -> Answer:
     """Return the end of the interior-point method for Coulomb friction."""
     cones = Cones.of(step)
-    return cones.answer(step, *central_path(step, cones, dilates=False, careful=careful))
+    found = central_path(step, cones, dilates=False, careful=careful, close=close)
+    return cones.answer(step, *found)
+
+
+def _by_slips(step: Step, tried: _Tried, x: Array) -> Iterator[Answer | None]:
+    """Give what friction that dilates tells with slips found before, and a path from there."""
+    for found in averaged(step, x, ENOUGH):
+        yield found
+        if tried.is_enough:
+            # It tells what is near, and not what each contact does.
+            yield path_from_guess(step, found, LAST_PIECES)
+            return
 
 
 def _at_last(step: Step, tried: _Tried) -> Iterator[Answer | None]:
-    """Give what contacts may do where nothing cheaper tells."""
-    if not step.friction.some_steep and not tried.is_enough:
+    """Give what contacts may do at rest where nothing cheaper tells."""
+    if not tried.is_enough:
         yield (guess := _coulomb(step, CAREFUL[1]))
         if tried.is_enough:
             return
-        for found in (_by_slips if tried.moves else _by_turns)(step, tried, guess):
+        for found in alternated(step, guess.forces):
             yield found
             if tried.is_enough:
                 return
+        yield path_from_guess(step, tried.best, NEAREST_PIECES)
     if not tried.is_enough:
         yield path_from_apart(step)
-
-
-def _by_slips(step: Step, tried: _Tried, _: Answer) -> Iterator[Answer | None]:
-    """Give what friction that dilates tells with slips found before, and paths from there."""
-    for found in averaged(step, tried.best.x):
-        yield found
-        yield path_from_guess(step, found, LAST_PIECES)
-
-
-def _by_turns(step: Step, tried: _Tried, guess: Answer) -> Iterator[Answer | None]:
-    """Give what springs make of a guess, then of alternating directions from there."""
-    yield followed(step, guess.forces)
-    yield from alternated(step, guess.forces)
-    yield path_from_guess(step, tried.best, NEAREST_PIECES)
-
-
-def _parted(step: Step, answer: Answer) -> Iterator[Answer]:
-    """Take friction from joints that hold it across a gap, until none does.
-
-    Steep friction that dilates needs no pressure. So it goes on where joints part, which
-    Coulomb's may not.
-    """
-    for _ in range(MOST_PARTINGS):
-        least = step.velocities(answer.x)[:, :2].min(axis=1, keepdims=True)
-        rubs = np.abs(answer.forces[:, 2:]).max(axis=1, keepdims=True)
-        parts = step.friction.steep & (np.minimum(least, rubs) > PARTED)
-        if not parts.any():
-            return
-        step = replace(step, friction=Friction(np.where(parts, 0.0, step.friction.mu)))
-        cones = Cones.of(step)
-        x, pressed, systems = central_path(step, cones, dilates=True)
-        x, pressed, more = augmented_lagrangian(step, cones, x, pressed)
-        answer = cones.answer(step, x, pressed, systems + more)
-        yield answer
