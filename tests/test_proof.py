@@ -265,6 +265,44 @@ def test_spoilt_proofs_are_refused(written: list[Table], count: int) -> None:
             checked(json.dumps(spoilt(written[at % len(written)], random)))
 
 
+def unlawful(table: Table) -> Iterator[Table]:
+    """Change the law of joints alone: forces balance as before, motions do the same work."""
+    stands = table["claim"] == "stands"
+    less = copy.deepcopy(table)
+    for each in (less["problem"], *less["problem"]["joints"]):
+        if "friction" in each:
+            # Where something slides; without, what hinges is as good a proof.
+            each["friction"] = 0 if stands else "inf"
+    yield less
+    turned = copy.deepcopy(table)
+    for at, joint in enumerate(turned["problem"]["joints"]):
+        if "normal" in joint:
+            joint["normal"] = [-each for each in joint["normal"]]
+        else:
+            joint["ends"].reverse()
+            if stands:
+                turned["forces"][at].reverse()
+    yield turned
+
+
+def test_a_proof_needs_the_law_of_each_joint(written: list[Table]) -> None:
+    """Friction that is not there, and joints that would pull: nothing but the law says no."""
+    refused = 0
+    for table in written:
+        for made, says_no in zip(unlawful(table), ("exceeds friction", "pulls"), strict=True):
+            sealed = {**made, "sha256": seal(made)}
+            if says_no == "pulls":
+                with pytest.raises(ValueError, match=says_no):
+                    verify(sealed)
+            else:
+                try:
+                    verify(sealed)
+                except ValueError as error:
+                    assert says_no in str(error)
+                    refused += 1
+    assert refused > len(written) / 2
+
+
 # Of blocks of very unlike weights, held shut or by corners: nine of 17 of 10,000 problems that
 # doubles could not prove.
 RATIONAL = (1238, 2098, 3151, 4653, 4991, 5198, 6614, 7055, 8158)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -96,24 +97,30 @@ class Blocks(Stepping):
             step = self._suits(left)
             before, rested = vars(self).copy(), self._is_at_rest
             self._move(step)
-            while self._is_too_long(step, before["_poses"], rested):
+            if step > self._step and np.abs(self._poses - before["_poses"]).max() > SLOW:
+                # Blocks move after all: again, in steps of the usual length.
                 vars(self).update(before)
-                step = min(self._step, left) if step > self._step else step / 2
+                step = min(self._step, left)
                 self._move(step)
+            if rested and self._asked.shaking is not None and not self._is_at_rest:
+                self._set_off(step, before)
             left -= step
         self._balance.look(self._poses, self._velocities, self._velocities)
 
-    def _is_too_long(self, step: float, before: Array, rested: bool) -> bool:
-        """Tell whether a step that was taken has to be shorter.
-
-        In a long one blocks move after all; or blocks at rest begin to move as the ground
-        shakes, and when in the step they do is not known.
-        """
-        if step > self._step:
-            return bool(np.abs(self._poses - before).max() > SLOW)
-        if self._asked.shaking is None or step < BEGINS * self._step:
-            return False
-        return rested and not self._is_at_rest
+    def _set_off(self, step: float, before: dict[str, Any]) -> None:
+        """Take a step in which blocks at rest begin to move, from when they do on."""
+        rests, moves = 0.0, step
+        while moves - rests > BEGINS * self._step:
+            middle = (rests + moves) / 2
+            vars(self).update(before)
+            self._move(middle)
+            rests, moves = (middle, moves) if self._is_at_rest else (rests, middle)
+        vars(self).update(before)
+        if rests:
+            self._move(rests)
+        self._sets_off = True
+        self._move(step - rests)
+        self._sets_off = False
 
     def _suits(self, left: float) -> float:
         """Return how long a step may be, of what is left."""

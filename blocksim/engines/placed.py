@@ -40,6 +40,7 @@ class Placed:
         self._looked: Array = self._poses
         self._velocities: Array = np.zeros_like(self._poses)
         self._turning, self._time = problem.forces_turn, 0.0
+        self._sets_off = False
         self._free = self._still = problem.applied_forces() / self._mass
         self._solution: Solution | None = None
         self._guess = NO_GUESS
@@ -67,12 +68,12 @@ class Placed:
     def _shake(self, step: float) -> None:
         """Add what the ground's acceleration does in a step to the accelerations.
 
-        Blocks at rest begin to move by that at its end: by the mean of the step they might not,
-        and begin too late. Where they rest at both ends they rest between.
+        By that at its end it is seen whether blocks at rest begin to move: by the mean of the
+        step they might not, and begin too late. Where they rest at both ends they rest between.
         """
         if self._asked.shaking is not None:
             start, self._time = self._time, self._time + step
-            if self._is_at_rest:
+            if self._is_at_rest and not self._sets_off:
                 start = self._time - BEGINS * step
             seen = self._asked.shaken(start, self._time) - self._asked.gravity
             self._free = (self._free if self._turning else self._still).copy()
