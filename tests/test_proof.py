@@ -285,22 +285,22 @@ def unlawful(table: Table) -> Iterator[Table]:
     yield turned
 
 
+def objection(table: Table) -> str:
+    """Seal a table anew, and return why it is refused; nothing where it is not."""
+    try:
+        verify({**table, "sha256": seal(table)})
+    except ValueError as error:
+        return str(error)
+    return ""
+
+
 def test_a_proof_needs_the_law_of_each_joint(written: list[Table]) -> None:
     """Friction that is not there, and joints that would pull: nothing but the law says no."""
-    refused = 0
-    for table in written:
-        for made, says_no in zip(unlawful(table), ("exceeds friction", "pulls"), strict=True):
-            sealed = {**made, "sha256": seal(made)}
-            if says_no == "pulls":
-                with pytest.raises(ValueError, match=says_no):
-                    verify(sealed)
-            else:
-                try:
-                    verify(sealed)
-                except ValueError as error:
-                    assert says_no in str(error)
-                    refused += 1
-    assert refused > len(written) / 2
+    said = [[objection(each) for each in unlawful(table)] for table in written]
+    rubs, pulls = zip(*said, strict=True)
+    assert all("it pulls, closes, or" in each for each in pulls)
+    assert all("exceeds friction" in each for each in rubs if each)
+    assert sum(map(bool, rubs)) > len(written) / 2
 
 
 # Of blocks of very unlike weights, held shut or by corners: nine of 17 of 10,000 problems that
