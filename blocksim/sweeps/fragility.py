@@ -26,6 +26,7 @@ from blocksim.blocks.record import from_record, to_record
 from blocksim.blocks.shaking import AMPLITUDE, Shaking
 from blocksim.common.checks import require
 from blocksim.common.files import AnyPath
+from blocksim.common.progress import Progress
 from blocksim.engines.base import Method
 from blocksim.simulation.verdict import Verdict
 from blocksim.sweeps.answers import version_of
@@ -139,14 +140,7 @@ def fragility(
     chosen: Method = choose(given.method, problem=problems[0], settings=given.settings)
     overrides = tuple(sorted(given.settings.items()))
     cases = scaled(problems, amplitudes, chosen.name, overrides)
-    with ExitStack() as stack:
-        alone = stack.enter_context(ThreadPoolExecutor(1)) if workers == 1 else None
-        kept = folder or stack.enter_context(TemporaryDirectory())
-        sweep(cases, kept, executor=alone, workers=workers, progress=given.progress)
-        found = {str(row["id"]): row["verdict"] for row in read_rows(kept)}
-    version = version_of(chosen.name)
-    # What no process could answer has no verdict.
-    said = [Verdict(found[each.identity(version).hex()] or Verdict.UNDECIDED) for each in cases]
+    said = _swept(cases, version_of(chosen.name), folder, workers, given.progress)
     wide = len(amplitudes)
     return Fragility(
         problem=problem,
@@ -154,6 +148,23 @@ def fragility(
         amplitudes=np.array(amplitudes, dtype=float),
         verdicts=tuple(tuple(said[at : at + wide]) for at in range(0, len(said), wide)),
     )
+
+
+def _swept(
+    cases: list[Recorded],
+    version: str,
+    folder: AnyPath | None,
+    workers: int,
+    progress: Progress,
+) -> list[Verdict]:
+    """Ask about all cases, and return their verdicts."""
+    with ExitStack() as stack:
+        alone = stack.enter_context(ThreadPoolExecutor(1)) if workers == 1 else None
+        kept = folder or stack.enter_context(TemporaryDirectory())
+        sweep(cases, kept, executor=alone, workers=workers, progress=progress)
+        found = {str(row["id"]): row["verdict"] for row in read_rows(kept)}
+    # What no process could answer has no verdict.
+    return [Verdict(found[each.identity(version).hex()] or Verdict.UNDECIDED) for each in cases]
 
 
 def _require_asked(records: Mapping[str, Shaking], amplitudes: Sequence[float]) -> None:
