@@ -18,7 +18,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Bbox
 
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.outlines import signed_area
+from blocksim.blocks.outlines import width
 from blocksim.common.version import __version__
 from blocksim.common.words import printable
 from blocksim.limit import in_world
@@ -232,10 +232,8 @@ def _draw_numbers(axes: Axes, sheet: Sheet, layout: Layout) -> None:
     problem, mm = sheet.problem, layout.mm
     for index, block in enumerate(problem.assembly.blocks):
         name = printable(block.name or str(index))
-        area = sum(signed_area(part) for part in block.polygons)
-        wide = float(np.ptp(block.vertices, axis=0).min())
-        # As wide as a block of the same area and the larger side would be.
-        room = min(wide, area / float(np.ptp(block.vertices, axis=0).max()))
+        # However it is turned: voussoirs of an arch have as much room each.
+        room = max(width(part) for part in block.polygons)
         # Where there is little room, every fifth: they are counted on.
         seldom = room < ROOMY * mm and index % EVERY != EVERY - 1
         if seldom or room < max(NUMBER, len(name) * DIGIT) * mm:
