@@ -31,8 +31,9 @@ CLOSE, CLOSEST = 1e-12, 1e-17
 """Mean product of force and velocity at the edges at which the contacts tell what they do, and
 at which they need not, as forces and velocities are known."""
 YIELD = 1e-10
-"""Yield of contacts over their force. Faces that do not quite fit contradict each other: where
-nothing yields forces grow without end, and none but huge ones solve a step."""
+"""Yield of contacts over their force, where no friction is steep. Faces that do not quite fit
+contradict each other: where nothing yields forces grow without end, and none but huge ones
+solve a step."""
 MOST_STEPS = 80
 BOLD, BOLDEST = 0.995, 1 - 1e-12
 """Least and largest share of the way to the bounds that a step goes."""
@@ -71,19 +72,20 @@ def central_path(
     if not dilates:
         lift, turned = _lift(step, x, cones, SMOOTH)
     apart = bands.along(edges, x) + offset + lift
-    least, pressed = STEEP_START if step.friction.some_steep else START
+    steep = step.friction.some_steep
+    (least, pressed), yields = (STEEP_START, 0.0) if steep else (START, YIELD)
     room: Array = np.maximum(np.abs(apart), least)
     # What is far open presses little: all products begin alike.
     forces: Array = least * pressed / room
-    short, count = apart + YIELD * forces - room, 0
+    short, count = apart + yields * forces - room, 0
     for count in range(MOST_STEPS):  # noqa: B007
         product = float(np.vdot(room, forces)) / room.size
         if product < close:
             break
-        solve = bands.factored(edges, forces / (room + YIELD * forces), turned)
+        solve = bands.factored(edges, forces / (room + yields * forces), turned)
         if solve is None:
             break
-        toward = _toward(solve, bands, edges, turned, free - x, (room, short, forces))
+        toward = _toward(solve, bands, edges, turned, free - x, (room, short, forces, yields))
         _, wider, more = toward(0.0)
         ahead = _length(room, wider, forces, more)
         after = float(np.vdot(room + ahead * wider, forces + ahead * more)) / room.size
@@ -100,7 +102,7 @@ def central_path(
             smooth = SMOOTH * math.sqrt(float(np.vdot(room, forces)) / room.size)
             lift, turned = _lift(step, x, cones, smooth)
         # Not as it follows from the last one: round-off would add up where friction is steep.
-        short = bands.along(edges, x) + offset + lift + YIELD * forces - room
+        short = bands.along(edges, x) + offset + lift + yields * forces - room
     return x, forces, count
 
 
@@ -110,19 +112,19 @@ def _toward(
     edges: Array,
     turned: Array | None,
     left: Array,
-    at: tuple[Array, Array, Array],
+    at: tuple[Array, Array, Array, float],
 ) -> Callable[[Array | float], tuple[Array, Array, Array]]:
     """Return what changes x, room and forces to products of so much, over the room."""
-    room, short, forces = at
-    weight: Array = forces / (room + YIELD * forces)
-    seen, share = edges if turned is None else turned, 1 - YIELD * weight
+    room, short, forces, yields = at
+    weight: Array = forces / (room + yields * forces)
+    seen, share = edges if turned is None else turned, 1 - yields * weight
 
     def found(target: Array | float) -> tuple[Array, Array, Array]:
         more: Array = share * (target - forces) - weight * short
         way = solve(left + bands.pull(edges, forces + more))
         wider = bands.along(seen, way)
         more = more - weight * wider
-        return way, wider + short + YIELD * more, more
+        return way, wider + short + yields * more, more
 
     return found
 
