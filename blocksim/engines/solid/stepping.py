@@ -250,14 +250,14 @@ class SolidBlocks:
         least, place, overlap = math.inf, self._place, 0.0
         for _ in range(PUSHES):
             points, friction, sharp = self._points(self._place, 0.0)
-            deep = depth(points)
+            now = seen(self.bodies, points, self._place, self._place)
+            deep = -float(now.gaps.min(initial=0.0))
             if deep < least:
                 least, place, overlap = deep, self._place, sharp
             if deep <= DEEP:
                 break
-            now = seen(self.bodies, points, self._place, self._place)
-            drift = np.zeros((len(points.gaps), 3))
-            drift[:, 0] = points.gaps / deep
+            drift = np.zeros((len(now.gaps), 3))
+            drift[:, 0] = now.gaps / deep
             still = np.zeros_like(self._velocities)
             asked = self.bodies.asked(now.rows, now.sides, drift, still, friction)
             forces = dilating(asked)
