@@ -104,6 +104,13 @@ def test_what_was_open_once_is_decided(index: int) -> None:
     assert check(asked.problem, method="direct").verdict is Verdict.COLLAPSES
 
 
+def test_a_wall_a_hair_inside_its_limit_stands() -> None:
+    """Contacts that yield, by 1e-10 of their force, miss its rest for a motion of 4 g."""
+    asked = drawn(random_truth.case(8352))
+    assert certificate(asked.problem).stands
+    assert check(asked.problem, method="direct").verdict is Verdict.STANDS
+
+
 def test_a_load_that_nothing_limits_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """HiGHS's dual simplex gets lost in one of these, and says neither of the two."""
     asked: list[Problem] = []

@@ -17,7 +17,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.cones import Cones
-from blocksim.engines.contact.interior import CLOSEST, central_path
+from blocksim.engines.contact.interior import central_path
 from blocksim.engines.contact.step import Answer, Step
 
 TURNS, PAUSE = 40, 8
@@ -43,7 +43,7 @@ def averaged(step: Step, x: Array, enough: float) -> Iterator[Answer]:
     lifted = lift(x)
     for turn in range(1, TURNS + 1):
         fixed = replace(cones, offset=cones.offset + np.tile(lifted, 2))
-        x, pressed, count = central_path(step, fixed, dilates=True, close=CLOSEST)
+        x, pressed, count = central_path(step, fixed, dilates=True, moves=True)
         systems += count
         found = cones.answer(step, x, pressed, systems)
         found = replace(found, residual=step.residual(x, found.forces))

@@ -31,9 +31,9 @@ CLOSE, CLOSEST = 1e-12, 1e-17
 """Mean product of force and velocity at the edges at which the contacts tell what they do, and
 at which they need not, as forces and velocities are known."""
 YIELD = 1e-10
-"""Yield of contacts over their force, where no friction is steep. Faces that do not quite fit
-contradict each other: where nothing yields forces grow without end, and none but huge ones
-solve a step."""
+"""Yield of contacts over their force in motion, where no friction is steep. Faces that do not
+quite fit contradict each other: where nothing yields forces grow without end, and none but huge
+ones solve a step."""
 MOST_STEPS = 80
 BOLD, BOLDEST = 0.995, 1 - 1e-12
 """Least and largest share of the way to the bounds that a step goes."""
@@ -55,13 +55,14 @@ def central_path(
     *,
     dilates: bool,
     careful: float = CAREFUL[0],
-    close: float = CLOSE,
+    moves: bool = False,
 ) -> tuple[Array, Array, int]:
     """Follow the central path.
 
     `dilates`: Whether friction does; Coulomb's must not be steep.
     `careful`: Least part of the product that a step aims at, where friction does not dilate.
-    `close`: Product that ends the path.
+    `moves`: Whether blocks are in motion, whose faces may not quite fit. Of rest nothing is
+        asked but forces: contacts that yield would miss it.
     Returns `x`, (3 blocks,): Accelerations.
     Returns `pressed`, (joints, 4 or 6): Forces along the edges.
     Returns `systems`: Banded systems factored.
@@ -73,7 +74,8 @@ def central_path(
         lift, turned = _lift(step, x, cones, SMOOTH)
     apart = bands.along(edges, x) + offset + lift
     steep = step.friction.some_steep
-    (least, pressed), yields = (STEEP_START, 0.0) if steep else (START, YIELD)
+    least, pressed = STEEP_START if steep else START
+    yields, close = (0.0 if steep else YIELD, CLOSEST) if moves else (0.0, CLOSE)
     room: Array = np.maximum(np.abs(apart), least)
     # What is far open presses little: all products begin alike.
     forces: Array = least * pressed / room

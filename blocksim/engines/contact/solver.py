@@ -41,7 +41,7 @@ from blocksim.engines.contact.averaged import averaged
 from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.coulomb import Contacts, Friction
-from blocksim.engines.contact.interior import CAREFUL, CLOSE, CLOSEST, central_path
+from blocksim.engines.contact.interior import CAREFUL, central_path
 from blocksim.engines.contact.path_following import (
     LAST_PIECES,
     NEAREST_PIECES,
@@ -181,7 +181,7 @@ class ContactProblem:
         yield path_from_guess(step, guess, LAST_PIECES)
         for tame in _tamed(step):
             if not tried.is_enough:
-                yield (guess := _coulomb(tame, CAREFUL[2], CLOSEST))
+                yield (guess := _coulomb(tame, CAREFUL[2], moves=True))
         if not step.friction.some_steep:
             for begun in (guess.x, x):
                 if not tried.is_enough:
@@ -295,10 +295,10 @@ def _tamed(step: Step) -> Iterator[Step]:
         yield replace(step, friction=step.friction.at_most(most))
 
 
-def _coulomb(step: Step, careful: float = CAREFUL[0], close: float = CLOSE) -> Answer:
+def _coulomb(step: Step, careful: float = CAREFUL[0], *, moves: bool = False) -> Answer:
     """Return the end of the interior-point method for Coulomb friction."""
     cones = Cones.of(step)
-    found = central_path(step, cones, dilates=False, careful=careful, close=close)
+    found = central_path(step, cones, dilates=False, careful=careful, moves=moves)
     return cones.answer(step, *found)
 
 
