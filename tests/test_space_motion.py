@@ -285,9 +285,9 @@ def test_blocks_that_overlap_are_pushed_apart_though_others_are_in_the_way(seed:
     way = np.zeros_like(stepping._velocities)
     way[:, :3] = 1e-3 * np.random.default_rng(seed).normal(size=(len(way), 3))
     stepping._place = stepping._place.moved(way)
-    assert depth(stepping._points(stepping._place, 0.0)[0]) > 2e-3
+    assert depth(stepping._points(stepping._place, 0.0)[0].gaps) > 2e-3
     stepping._push_apart()
-    assert depth(stepping._points(stepping._place, 0.0)[0]) < 1e-6
+    assert depth(stepping._points(stepping._place, 0.0)[0].gaps) < 1e-6
     # Edges that share no joint are rounded.
     assert (
         stepping.quality().penetration < 1e-6 + ROUNDED * stepping.bodies.hulls.thickness.max()

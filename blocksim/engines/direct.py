@@ -95,14 +95,15 @@ class Blocks(Stepping):
         left = steps * self._step
         while left > LEAST * self._step:
             step = self._suits(left)
-            before, rested = vars(self).copy(), self._is_at_rest
+            before = vars(self).copy()
+            rested = self._asked.shaking is not None and self._is_at_rest
             self._move(step)
             if step > self._step and np.abs(self._poses - before["_poses"]).max() > SLOW:
                 # Blocks move after all: again, in steps of the usual length.
                 vars(self).update(before)
                 step = min(self._step, left)
                 self._move(step)
-            if rested and self._asked.shaking is not None and not self._is_at_rest:
+            if rested and not self._is_at_rest:
                 self._set_off(step, before)
             left -= step
         self._balance.look(self._poses, self._velocities, self._velocities)

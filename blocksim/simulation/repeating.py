@@ -31,7 +31,7 @@ COARSER = 2
 
 
 def estimated(
-    recording: Recording[Blocks], poses: Sequence[Array], frames: Sequence[int] | slice
+    recording: Recording[Blocks], poses: Sequence[Array], frames: Sequence[int]
 ) -> Recording[Blocks]:
     """Return a recording with the errors that another run shows, where they are the worst.
 
@@ -51,7 +51,8 @@ def estimated(
     known = float(times[count - 1]) if len(beyond) else None
     quality = replace(
         told,
-        penetration=_deepest(recording),
+        # It is that of the recording, whatever it is compared with.
+        penetration=_deepest(recording) if told.error is None else told.penetration,
         error=max(float(off[:count].max()), told.error or 0.0),
         late=max((each for each in (late, told.late) if each is not None), default=None),
         known=min((each for each in (known, told.known) if each is not None), default=None),

@@ -132,7 +132,7 @@ class SolidBlocks:
                     continue
                 self._residual = 0.0
                 self._closing(part)
-                deep = depth(self._points(self._place, 0.0)[0])
+                deep = depth(self._points(self._place, 0.0)[0].gaps)
             if (self._residual > COARSE or deep > MOST) and halvings < HALVINGS:
                 vars(self).update(before)
                 halvings += 1
@@ -251,7 +251,7 @@ class SolidBlocks:
         for _ in range(PUSHES):
             points, friction, sharp = self._points(self._place, 0.0)
             now = seen(self.bodies, points, self._place, self._place)
-            deep = -float(now.gaps.min(initial=0.0))
+            deep = depth(now.gaps)
             if deep < least:
                 least, place, overlap = deep, self._place, sharp
             if deep <= DEEP:
@@ -269,9 +269,9 @@ class SolidBlocks:
         self._penetration = max(self._penetration, overlap)
 
 
-def depth(points: Points) -> float:
+def depth(gaps: Array) -> float:
     """Return how deep blocks are within each other, deeper than edges are rounded."""
-    return -float(points.gaps.min(initial=0.0))
+    return -float(gaps.min(initial=0.0))
 
 
 def at_rest(bodies: Bodies) -> Step:
