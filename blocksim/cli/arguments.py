@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import Field as Declared
 from dataclasses import dataclass, field, fields, is_dataclass
 from inspect import Parameter, getdoc, signature
@@ -148,34 +148,39 @@ def command_of(function: Callable[..., None], name: str | None = None) -> Comman
     """Make a command of a function.
 
     `function`: The default of each parameter is an `option` or an `argument`, or its type is a
-        dataclass of such. Of these it gets one, whose fields are options below its `heading`.
-        Any other default is that of an option of which nothing is said.
+        dataclass of such, or of such groups. Of these it gets one, whose fields are options
+        below its `heading`. Any other default is that of an option of which nothing is said.
     `name`: Of the command.
     """
-    groups: dict[str, type[Any]] = {}
     parameters: list[click.Parameter] = []
     headings: dict[str, str] = {}
-    hints = get_type_hints(function)
-    for each in signature(function).parameters.values():
-        hint = hints[each.name]
+
+    def taken(
+        name: str, hint: Any, said: Any, heading: str
+    ) -> Callable[[Mapping[str, Any]], Any]:
+        """Declare a parameter, and return what makes its value of what was given."""
         if is_dataclass(hint) and isinstance(hint, type):
-            groups[each.name] = hint
-            own = get_type_hints(hint)
-            for one in fields(hint):
-                parameters.append(_parameter(one.name, own[one.name], one))
-                headings[one.name] = getattr(hint, "heading", "Options")
-        else:
-            said: Any = each.default
-            if not hasattr(said, "metadata"):
-                said = (argument if said is NEEDED else option)("", default=said)
-            parameters.append(_parameter(each.name, hint, said))
+            own, under = get_type_hints(hint), getattr(hint, "heading", heading)
+            parts = {
+                each.name: taken(each.name, own[each.name], each, under)
+                for each in fields(hint)
+            }
+            return lambda given: hint(**{key: part(given) for key, part in parts.items()})
+        if not hasattr(said, "metadata"):
+            said = (argument if said is NEEDED else option)("", default=said)
+        parameters.append(_parameter(name, hint, said))
+        if heading:
+            headings[name] = heading
+        return lambda given: given[name]
+
+    hints = get_type_hints(function)
+    every = {
+        each.name: taken(each.name, hints[each.name], each.default, "")
+        for each in signature(function).parameters.values()
+    }
 
     def called(**given: Any) -> None:
-        made = {
-            key: group(**{one.name: given.pop(one.name) for one in fields(group)})
-            for key, group in groups.items()
-        }
-        function(**given, **made)
+        function(**{key: part(given) for key, part in every.items()})
 
     made = Command(name, callback=called, params=parameters, help=getdoc(function))
     made.headings = headings

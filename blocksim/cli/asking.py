@@ -20,7 +20,7 @@ from blocksim.blocks.joints import joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.vehicles import vehicle_of
 from blocksim.cli.arguments import option
-from blocksim.cli.given import Crossed, Given, Loading, given_of
+from blocksim.cli.given import Crossed, given_of
 from blocksim.cli.options import (
     CASES,
     EXIT_CODES,
@@ -31,7 +31,6 @@ from blocksim.cli.options import (
     OVER,
     PROOF,
     REDUCE,
-    SCENE,
     SET,
     SPATIAL,
     THICKNESS,
@@ -42,7 +41,7 @@ from blocksim.cli.options import (
 )
 from blocksim.cli.output import CURVES, answer_with, picture_kind, progress, write_files
 from blocksim.cli.proving import write_proof
-from blocksim.cli.subject import anything_asked, is_many
+from blocksim.cli.subject import Subject, anything_asked
 from blocksim.common.checks import require
 from blocksim.common.sheets import write_sheet
 from blocksim.report.answers import bracket_record, check_record
@@ -59,9 +58,7 @@ MOVING = ("push", "spread")
 
 
 def check(
-    given: Given,
-    loading: Loading,
-    scene: str | None = SCENE,
+    asked: Subject,
     method: str = METHOD,
     settings: list[str] | None = SET,
     joint: str | None = JOINT,
@@ -82,10 +79,10 @@ def check(
         from blocksim.cli.many import asked_of_cases
 
         refuse({"joint": joint, "must_rest": must_rest, "proof": proof}, why=OF_ONE)
-        told = asked_of_cases(cases, scene, given, loading, how, spatial=spatial)
+        told = asked_of_cases(cases, asked, how, spatial=spatial)
         answer_with(cases_record, cases_lines, told, as_json=as_json)
         raise click.exceptions.Exit(EXIT_CODES[told.governing.answer.verdict])
-    if scene is not None and is_many(scene):
+    if asked.is_many:
         from blocksim.cli.many import check_each
 
         alone: dict[str, object] = {
@@ -93,8 +90,8 @@ def check(
             "set": settings, "joint": joint, "reduce": reduce, "must_rest": must_rest,
             "spatial": spatial, "proof": proof,
         }  # fmt: skip
-        check_each(scene, given, loading, alone)
-    problem = anything_asked(scene, given, loading, spatial=spatial, thick=True)
+        check_each(asked, alone)
+    problem = anything_asked(asked, spatial=spatial, thick=True)
     if problem.in_space:
         refuse({"joint": joint, "must_rest": must_rest})
     at = _place_of(joint, problem)
@@ -118,10 +115,8 @@ def _place_of(joint: str | None, problem: Problem) -> int | None:
 
 
 def bracket(
-    given: Given,
-    loading: Loading,
+    asked: Subject,
     crossed: Crossed,
-    scene: str | None = SCENE,
     over: str | None = OVER,
     within: tuple[float, float] | None = WITHIN,
     method: str = METHOD,
@@ -136,12 +131,12 @@ def bracket(
 
     Of a vehicle that crosses it is the least load factor, and where it stands then.
     """
-    crosses = crossed.vehicle is not None
+    crosses, given, loading = crossed.vehicle is not None, asked.given, asked.loading
     if not crosses:
         allowed = "left out, or --vehicle beside it"
         require(crossed.along is None, "--along", crossed.along, allowed)
         require_curves(over, crossed.out)
-    of_arch = over in {None, THICKNESS} and scene is None
+    of_arch = over in {None, THICKNESS} and asked.scene is None
     # The thickness of an arch under its own weight need not be given to be sought.
     sought = of_arch and not (crosses or spatial or loading.given)
     if sought:
@@ -150,11 +145,12 @@ def bracket(
     refuse(
         {name: acting[name] for name in acting if name == over}, why="left out: it is sought"
     )
-    push, loading = loading.push, replace(loading, push=None)
+    push = loading.push
     allowed = "left out beside --vehicle"
     require(push is None or not crosses, "--push", push, allowed)
+    unpushed = replace(asked, loading=replace(loading, push=None))
     problem = anything_asked(
-        scene, given, loading, spatial=spatial, tilts=over == "tilt",
+        unpushed, spatial=spatial, tilts=over == "tilt",
         pushes=over == "push" or push is not None, thick=not sought, sought=sought,
     )  # fmt: skip
     if problem.in_space:

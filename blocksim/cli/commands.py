@@ -7,12 +7,11 @@ from pathlib import Path
 from blocksim.ask.methods import choose
 from blocksim.ask.simulate import simulate as let_go
 from blocksim.blocks.problem import Problem
-from blocksim.cli.arguments import argument, option
-from blocksim.cli.given import Given, Loading, given_of
+from blocksim.cli.arguments import option
+from blocksim.cli.given import given_of
 from blocksim.cli.options import (
     MUST_REST,
     OWN,
-    SCENE,
     SET,
     SPATIAL,
     named_options,
@@ -33,7 +32,7 @@ from blocksim.cli.rendering import (
     require_pixels,
     write_still,
 )
-from blocksim.cli.subject import anything_asked, arch_of
+from blocksim.cli.subject import Subject, anything_asked, arch_of
 from blocksim.common.checks import Range, require
 from blocksim.common.files import require_place
 from blocksim.engines import NAMES
@@ -45,10 +44,8 @@ RECORDED = Range(low=0, high=600, unit="s", above=True)
 
 
 def simulate(
-    given: Given,
-    loading: Loading,
+    asked: Subject,
     out: Path | None = option("Recording to write, .npz; required."),
-    scene: str | None = SCENE,
     method: str = option(f"auto, or an engine: {', '.join(NAMES)}{OWN}.", default="auto"),
     over: str | None = option("spread: move the supports until it has fallen."),
     seconds: float | None = option(
@@ -58,7 +55,7 @@ def simulate(
     spatial: bool = SPATIAL,
 ) -> None:
     """Let it go and record its motion."""
-    problem = anything_asked(scene, given, loading, spatial=spatial, thick=True, out=out)
+    problem = anything_asked(asked, spatial=spatial, thick=True, out=out)
     size = problem.length_name
     out = out or Path()
     require(out.suffix == ".npz", "--out", str(out), "a file name ending in .npz")
@@ -102,14 +99,12 @@ def _spread(
 
 
 def render(
-    given: Given,
-    loading: Loading,
+    asked: Subject,
     filmed: Filmed,
     out: Path | None = option(
         "File to write: .pdf, .svg, .png or .dxf, .mp4 or .gif, or .glb, .gltf, "
         ".csv, .json of a recording, or .html to turn blocks in space around; required."
     ),
-    scene: str | None = argument("Structure, or a recording: an .npz file."),
     method: str | None = ENGINE,
     must_rest: bool = MUST_REST,
 ) -> None:
@@ -123,25 +118,29 @@ def render(
     1 % below its least thickness where none is given. With --must-rest a picture shows the
     motion that friction lets begin, and a film the blocks let go along it in direct.
     """
-    if scene is None:
-        arch_of(given, out=out)
+    if asked.scene is None:
+        arch_of(asked.given, out=out)
     require_given(out=out)
     out = out or Path()
     kind = picture_kind(out, (*FILMS, "png", "svg", "pdf", "dxf", "html", *MODELS, *TABLES))
     if kind in (*MODELS, *TABLES):
         moving = given_of(filmed, "beside", "slow", "time", "height")
         refuse(moving, why=f"left out of a .{kind}")
-        export(out, kind, *recordings(scene, given, loading, method, None, must_rest=must_rest))
-    elif kind in FILMS or filmed.view == "3d" or filmed.beside or str(scene).endswith(".npz"):
+        export(out, kind, *recordings(asked, method, None, must_rest=must_rest))
+    elif (
+        kind in FILMS
+        or filmed.view == "3d"
+        or filmed.beside
+        or str(asked.scene).endswith(".npz")
+    ):
         require(kind != "dxf", "--out", str(out), "another kind: a .dxf is of no motion")
         still = filmed.time is None or kind not in FILMS
         require(still, "--time", filmed.time, "left out of a film")
         require_height(filmed.height)
-        runs = recordings(scene, given, loading, method, filmed.beside, must_rest=must_rest)
+        runs = recordings(asked, method, filmed.beside, must_rest=must_rest)
         film(out, runs, filmed)
     else:
         moving = given_of(filmed, "slow", "time")
         refuse(moving, why="left out: the picture is of no motion")
         require_pixels(filmed.height, kind)
-        tall = filmed.height
-        write_still(out, kind, scene, given, loading, method, tall, must_rest=must_rest)
+        write_still(out, kind, asked, method, filmed.height, must_rest=must_rest)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import dataclass, fields, replace
 from io import BufferedReader, TextIOWrapper
 from itertools import count
 from pathlib import Path
@@ -19,10 +19,10 @@ from blocksim.blocks.entries import LoadEntry, listed
 from blocksim.blocks.given import Body
 from blocksim.blocks.loads import LoadsOf
 from blocksim.blocks.problem import Load, Problem
-from blocksim.cli.given import Given, Loading, given_of
+from blocksim.cli.given import Loading, given_of
 from blocksim.cli.options import named_options, option_of
 from blocksim.cli.output import progress
-from blocksim.cli.subject import STREAM, anything_asked, is_many
+from blocksim.cli.subject import STREAM, Subject, anything_asked
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.fields import fields_of
@@ -36,25 +36,24 @@ GIVEN = {"mu", "friction_angle"}
 """Options that mean something for many structures."""
 
 
-def check_each(
-    scene: str, given: Given, loading: Loading, others: Mapping[str, object]
-) -> NoReturn:
+def check_each(asked: Subject, others: Mapping[str, object]) -> NoReturn:
     """Answer the command check with a line of JSON for each structure, in their order."""
-    for name, value in {**asdict(given), **asdict(loading), **others}.items():
+    for name, value in {**asked.options, **others}.items():
         unset = value is None or value is False or name in GIVEN
         allowed = "left out with many structures: these are read as they are"
         require(unset, option_of(name), value, allowed)
     with named_options():
-        friction = given.friction
-    if scene == STREAM:
+        friction = asked.given.friction
+    if asked.scene == STREAM:
         # Each line has its answer, an empty one as well.
         names = ({"line": number} for number in count(1))
         told = check_batches(_lines(), friction=friction)
     else:
         endings = (*LARGEST_FILES, *OTHERS)
-        paths = sorted(p for p in Path(scene).iterdir() if p.suffix.lower() in endings)
+        folder = asked.scene or ""
+        paths = sorted(p for p in Path(folder).iterdir() if p.suffix.lower() in endings)
         if not paths:
-            raise InputError("folder", MISSING, f"files in {', '.join(endings)}", where=scene)
+            raise InputError("folder", MISSING, f"files in {', '.join(endings)}", where=folder)
         names = ({"file": path.name} for path in paths)
         batches = (paths[at : at + BATCH] for at in range(0, len(paths), BATCH))
         told = check_batches(batches, friction=friction)
@@ -111,17 +110,14 @@ class CasesFile(Written):
     factors: dict[str, float] | None = None
 
 
-def asked_of_cases(
-    path: Path, scene: str | None, given: Given, loading: Loading, how: Options, *,
-    spatial: bool = False,
-) -> Cases:  # fmt: skip
+def asked_of_cases(path: Path, asked: Subject, how: Options, *, spatial: bool = False) -> Cases:
     """Read the cases of a structure from a .toml file, and answer them.
 
-    `scene`, `given`, `loading`, `spatial`: The structure, and what acts on it in every case
-        that says nothing else; as of `anything_asked`.
+    `asked`, `spatial`: The structure, and what acts on it in every case that says nothing else;
+        as of `anything_asked`.
     """
     allowed = "left out with many structures: cases are of one"
-    require(scene is None or not is_many(scene), "--cases", str(path), allowed)
+    require(not asked.is_many, "--cases", str(path), allowed)
     where = str(path)
     table = read_toml(where, "cases", "an existing .toml file", LARGEST_FILE)
     written = as_said(CasesFile, table, where)
@@ -131,7 +127,7 @@ def asked_of_cases(
         if entry.name in {each.name for each in found}:
             raise InputError(f"{field}.name", entry.name, "another than before", where=where)
         try:
-            found.append(_case(entry, written.factors or {}, scene, given, loading, spatial))
+            found.append(_case(entry, written.factors or {}, asked, spatial))
         except InputError as error:
             # What an option would say is said of the key.
             key = error.field.removeprefix("--").replace("-", "_")
@@ -143,9 +139,8 @@ def asked_of_cases(
 
 
 def _case(
-    entry: CaseEntry, factors: Mapping[str, float], scene: str | None, given: Given,
-    loading: Loading, spatial: bool,
-) -> Case:  # fmt: skip
+    entry: CaseEntry, factors: Mapping[str, float], asked: Subject, spatial: bool
+) -> Case:
     """Put on a structure what acts in a case."""
     acting: dict[str, Any] = given_of(entry, *(each.name for each in fields(Loading)))
     for name, value in acting.items():
@@ -156,9 +151,8 @@ def _case(
     names = [each.name for each in fields(Factors)]
     for name in known:
         require(name in names, f"factors.{name}", known[name], f"one of {', '.join(names)}")
-    problem = anything_asked(
-        scene, given, replace(loading, **acting), spatial=spatial, thick=True
-    )
+    under = replace(asked, loading=replace(asked.loading, **acting))
+    problem = anything_asked(under, spatial=spatial, thick=True)
     for kind in ("dead", "live"):
         if (loads := getattr(entry, kind)) is not None:
             allowed = "left out: loads on blocks of a file of cases are in the plane"

@@ -10,7 +10,7 @@ from typing import cast
 
 from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES
-from blocksim.cli.arguments import argument, option
+from blocksim.cli.arguments import option
 from blocksim.cli.given import PARAMETERS, Crossed, Given, Loading
 from blocksim.common.checks import require
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
@@ -18,10 +18,6 @@ from blocksim.common.files import json_of
 from blocksim.simulation.simulated import SETTINGS
 from blocksim.simulation.verdict import Verdict
 
-SCENE = argument(
-    "A structure: a file, .json or .toml, or a shipped name (blocksim scenarios); or a kind: "
-    "its name (blocksim kinds), or module:CLASS of your own."
-)
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
 OWN = ", or an engine of your own: its name, or module:ENGINE"
 METHOD = option(f"{', '.join(CHOICES)}{OWN}.", default="auto")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -17,10 +17,9 @@ from blocksim.ask.rest import let_go, rest_words
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.cli.arguments import option
-from blocksim.cli.given import Given, Loading
 from blocksim.cli.options import OWN, named_options, refuse
 from blocksim.cli.output import progress, say, write
-from blocksim.cli.subject import anything_asked, arch_of, is_thick
+from blocksim.cli.subject import Subject, anything_asked, arch_of, is_thick
 from blocksim.common.checks import Range, require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.progress import Progress
@@ -85,9 +84,7 @@ def require_pixels(height: int | None, kind: str) -> None:
 
 
 def recordings(
-    scene: str | None,
-    given: Given,
-    loading: Loading,
+    asked: Subject,
     method: str | None,
     beside: Path | None,
     *,
@@ -98,11 +95,11 @@ def recordings(
     Where it is asked whether it must rest, blocks are let go along the motion that is found.
     """
     second = [] if beside is None else [load_recording(beside)]
-    if scene is not None and scene.endswith(".npz"):
-        said = {**asdict(given), **asdict(loading), "method": method, "must_rest": must_rest}
+    if asked.scene is not None and asked.scene.endswith(".npz"):
+        said = {**asked.options, "method": method, "must_rest": must_rest}
         refuse(said, why="left out: the recording says it")
-        return [load_recording(Path(scene)), *second]
-    problem = asked_as(anything_asked(scene, given, loading))
+        return [load_recording(Path(asked.scene)), *second]
+    problem = asked_as(anything_asked(asked))
     if must_rest:
         refuse({"must_rest": must_rest and problem.in_space})
         return [_along_motion(problem, method), *second]
@@ -202,9 +199,7 @@ def _motionless(recording: Recording) -> str:
 def write_still(
     out: Path,
     kind: str,
-    scene: str | None,
-    given: Given,
-    loading: Loading,
+    asked: Subject,
     method: str | None,
     height: int | None,
     *,
@@ -215,8 +210,9 @@ def write_still(
     What leans out of its plane is drawn in space, where it is asked about.
     """
     solid = "another kind: a page to turn around (.html) is of blocks in space"
-    if scene is not None or loading.given or given.lean is not None or is_thick(given):
-        problem = anything_asked(scene, given, loading, thick=given.lean is None)
+    given, acts = asked.given, asked.loading.given
+    if asked.scene is not None or acts or given.lean is not None or is_thick(given):
+        problem = anything_asked(asked, thick=given.lean is None)
         if problem.in_space or not problem.is_planar:
             problem = asked_as(problem)
             refuse({"must_rest": must_rest})

@@ -13,31 +13,27 @@ import click
 from blocksim.ask.check import Check, check
 from blocksim.ask.options import Options
 from blocksim.cli.arguments import option
-from blocksim.cli.given import Given, Loading
 from blocksim.cli.options import (
     CASES,
     EXIT_CODES,
     METHOD,
-    SCENE,
     SET,
     named_options,
     require_given,
     settings_of,
 )
 from blocksim.cli.output import picture_kind, progress, write
-from blocksim.cli.subject import anything_asked
+from blocksim.cli.subject import Subject, anything_asked
 from blocksim.common.checks import require
 from blocksim.common.dates import made_at
 from blocksim.report.printing import printed_page, require_browser
 
 
 def report(
-    given: Given,
-    loading: Loading,
+    asked: Subject,
     out: Path | None = option(
         "File to write: .html, .pdf (by Chromium or Chrome), .dxf; required."
     ),
-    scene: str | None = SCENE,
     project: str = option("Project, for the title block.", default=""),
     part: str = option("Part of it that this is.", default=""),
     engineer: str = option("Who is responsible for it.", default=""),
@@ -67,8 +63,8 @@ def report(
     if cases is not None:
         from blocksim.cli.many import asked_of_cases
 
-        compared = asked_of_cases(cases, scene, given, loading, options)
-    answer = compared.governing.answer if compared else _answer(scene, given, loading, options)
+        compared = asked_of_cases(cases, asked, options)
+    answer = compared.governing.answer if compared else _answer(asked, options)
     on = date or made_at().partition(" ")[0]
     titles = Titles(project=project, part=part, engineer=engineer, date=on)
     if kind == "dxf":
@@ -89,9 +85,9 @@ def report(
     raise click.exceptions.Exit(EXIT_CODES[answer.verdict])
 
 
-def _answer(scene: str | None, given: Given, loading: Loading, options: Options) -> Check[Any]:
+def _answer(asked: Subject, options: Options) -> Check[Any]:
     """Ask about one structure."""
-    problem = anything_asked(scene, given, loading, thick=True)
+    problem = anything_asked(asked, thick=True)
     with named_options(), progress() as told:
-        asked: Options = {**options, "progress": told}
-        return check(problem, **asked)
+        how: Options = {**options, "progress": told}
+        return check(problem, **how)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from blocksim.arch.dimensions import require_unit_weight
 from blocksim.blocks.problem import Problem
+from blocksim.cli.arguments import argument
 from blocksim.cli.given import Given, Loading
 from blocksim.cli.options import (
     named_options,
@@ -31,19 +32,35 @@ STREAM = "-"
 IN_METRES = " (or --span, --rise and --thickness, in m)"
 
 
-def is_many(scene: str) -> bool:
-    """Tell a stream or a folder of structures from one."""
-    try:
-        return scene == STREAM or Path(scene).is_dir()
-    except (OSError, ValueError):
-        # No name of a file: whatever reads it says so.
-        return False
+@dataclass(frozen=True, kw_only=True)
+class Subject:
+    """What is asked about, and what acts on it: a structure, or the arch by its options."""
+
+    given: Given
+    loading: Loading
+    scene: str | None = argument(
+        "A structure: a file, .json or .toml, or a shipped name (blocksim scenarios); or a "
+        "kind: its name (blocksim kinds), or module:CLASS of your own. To render, a recording, "
+        ".npz, as well."
+    )
+
+    @property
+    def options(self) -> dict[str, object]:
+        """All options, given or not."""
+        return {**asdict(self.given), **asdict(self.loading)}
+
+    @property
+    def is_many(self) -> bool:
+        """Whether it is a stream or a folder of structures."""
+        try:
+            return self.scene == STREAM or bool(self.scene and Path(self.scene).is_dir())
+        except (OSError, ValueError):
+            # No name of a file: whatever reads it says so.
+            return False
 
 
 def anything_asked(
-    scene: str | None,
-    given: Given,
-    loading: Loading,
+    asked: Subject,
     *,
     spatial: bool = False,
     tilts: bool = False,
@@ -54,15 +71,15 @@ def anything_asked(
 ) -> Problem[Any]:
     """Return what is asked about, in the plane or in space, and what the options put on it.
 
-    `scene`: A file, a shipped name or a kind; None for the circular arch by its options.
-    `given`, `thick`, `sought`, `needed`: As of `arch_asked`.
+    `thick`, `sought`, `needed`: As of `arch_asked`.
     `spatial`: Whether blocks of the plane are asked as prisms.
     `tilts`, `pushes`: Whether the question tilts or pushes them.
     """
     # Prisms tilt in space, towards any side; what is of the plane tilts in it.
+    given, loading = asked.given, asked.loading
     late = spatial and loading.azimuth is not None
     acting = replace(loading, tilt=None, push=None) if late else loading
-    if scene is None:
+    if asked.scene is None:
         found = arch_asked(given, thick=thick, sought=sought, **needed)
         if acting.given or given.lean is not None:
             from blocksim.cli.road import loaded
@@ -70,7 +87,7 @@ def anything_asked(
             found = loaded(found, Given(lean=given.lean), acting)
     else:
         require_given(**needed)
-        found = structure(scene, given, acting)
+        found = structure(asked.scene, given, acting)
     in_space = found.in_space or spatial
     given_way = pushes or tilts or loading.tilt is not None or loading.push is not None
     beside = "left out, or --tilt or --push beside it"

@@ -14,18 +14,16 @@ import numpy as np
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import read_table
 from blocksim.cli.arguments import argument, option
-from blocksim.cli.given import Given, Loading
 from blocksim.cli.options import (
     JSON,
     METHOD,
-    SCENE,
     SET,
     named_options,
     require_given,
     settings_of,
 )
 from blocksim.cli.output import CURVES, answer_with, picture_kind, progress, write_files
-from blocksim.cli.subject import anything_asked
+from blocksim.cli.subject import Subject, anything_asked
 from blocksim.common.checks import Range, require
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.common.sheets import write_sheet
@@ -113,9 +111,7 @@ def summary_lines(done: Summary, out: Path) -> list[str]:
 
 
 def fragility(
-    given: Given,
-    loading: Loading,
-    scene: str | None = SCENE,
+    asked: Subject,
     record: list[Path] | None = option(
         "Record of the ground, a .csv file as of --shake; repeatable; required."
     ),
@@ -135,9 +131,7 @@ def fragility(
     as_json: bool = JSON,
 ) -> None:
     """Find which share of records of the ground brings it down, by their amplitude."""
-    problem = anything_asked(
-        scene, given, loading, thick=True, record=record, amplitudes=amplitudes
-    )
+    problem = anything_asked(asked, thick=True, record=record, amplitudes=amplitudes)
     allowed = "x and y: in space there are check, bracket, simulate, render and report"
     require(not problem.in_space, "blocks", "three coordinates", allowed)
     for path in out or ():
