@@ -269,7 +269,8 @@ def test_a_dome_that_is_too_thin_falls_to_the_ground() -> None:
     assert quality.residual is not None
     assert quality.residual < 1e-5
     assert quality.gain < 1e-3
-    assert quality.penetration < 1e-3
+    # Overlap that only came about in a step went unseen: 1e-4 to 3e-3 by the last digit.
+    assert quality.penetration < 1e-5
     heights = recording.poses[:, :, 2] * problem.assembly.size
     assert (heights.max(axis=1) <= heights[0].max() + 1e-6).all()
     assert heights[-1].max() < 0.5 * heights[0].max()
@@ -286,12 +287,34 @@ def test_blocks_that_overlap_are_pushed_apart_though_others_are_in_the_way(seed:
     way[:, :3] = 1e-3 * np.random.default_rng(seed).normal(size=(len(way), 3))
     stepping._place = stepping._place.moved(way)
     assert depth(stepping._points(stepping._place, 0.0)[0].gaps) > 2e-3
-    stepping._push_apart()
+    stepping._push_apart(stepping._points(stepping._place, 0.0))
     assert depth(stepping._points(stepping._place, 0.0)[0].gaps) < 1e-6
     # Edges that share no joint are rounded.
     assert (
         stepping.quality().penetration < 1e-6 + ROUNDED * stepping.bodies.hulls.thickness.max()
     )
+
+
+@pytest.mark.parametrize("share", np.arange(0.05, 1, 0.1))
+def test_blocks_that_hit_at_their_corners_hit_wherever_in_a_step_they_do(share: float) -> None:
+    """Two free cubes, one of which passes the other's side: it takes velocity of it."""
+    solids = [Solid(parts=(GROUND,), fixed=True)]
+    solids += [Solid(parts=(box((x, 0, 0), (x + 1, 1, 1)),)) for x in (0, 2)]
+    stepping = SolidBlocks(problem_of(solids, 0.0), USUAL)
+    size, step = stepping.bodies.problem.assembly.size, USUAL.step
+    cube, speed, aside = 1 / size, 0.6, 0.1
+    way, hit = np.zeros_like(stepping._velocities), (1 + share) * step
+    way[:, 2] = 5.0
+    # Sides overlap a fifth of a step before the faces meet, which is the impact.
+    way[1, 0] = -cube + speed * hit
+    way[1, 1] = cube + aside * (hit - step / 5)
+    stepping._place = stepping._place.moved(way)
+    stepping._velocities[1, :2] = -speed, -aside
+    stepping.advance(2)
+    # One impulse at the corners, with moments of inertia of cubes, to first order in the step.
+    arm, spin = cube / 2, cube**2 / 6
+    taken = speed / (2 * (1 + arm**2 / spin))
+    assert stepping._velocities[0, 0] == pytest.approx(-taken, rel=0.18)
 
 
 def falling_tower() -> Problem[Any]:

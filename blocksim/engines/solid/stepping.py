@@ -10,6 +10,7 @@ changes no velocity.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,6 +54,19 @@ MOST = 5e-4
 """Overlap after impacts beyond which the step is halved [size]."""
 NEAR = 1e-3
 """Beyond the way of a step, how near blocks are that are looked at [size]."""
+
+
+class Found(NamedTuple):
+    """Points of contact about a place.
+
+    `points`: Their gaps are less those drawn, and edges are rounded.
+    `friction`, (points,).
+    `overlap`: How deep sharp edges are within each other [size].
+    """
+
+    points: Points
+    friction: Array
+    overlap: float
 
 
 class SolidBlocks:
@@ -116,6 +130,7 @@ class SolidBlocks:
     def _move(self, step: float) -> None:
         """Go on for a time."""
         left, halvings, nearer = step, 0, 0
+        there: Found | None = None
         nearest = NEARER if self._quiet >= QUIET else 0
         quiet = self._quiet + 1
         while left > 1e-9 * step and math.isfinite(self._residual):
@@ -123,7 +138,7 @@ class SolidBlocks:
             before = vars(self).copy()
             worst, self._residual = self._residual, 0.0
             share = self._smooth(part)
-            deep, closes = 0.0, share < 1
+            closes = share < 1
             if closes:
                 vars(self).update(before)
                 if nearer < nearest:
@@ -132,7 +147,9 @@ class SolidBlocks:
                     continue
                 self._residual = 0.0
                 self._closing(part)
-                deep = depth(self._points(self._place, 0.0)[0].gaps)
+            # Blocks may have come to overlap where they were not near along a face before.
+            there = self._points(self._place, 0.0)
+            deep = depth(there.points.gaps)
             if (self._residual > COARSE or deep > MOST) and halvings < HALVINGS:
                 vars(self).update(before)
                 halvings += 1
@@ -142,7 +159,8 @@ class SolidBlocks:
             self._residual = max(worst, self._residual)
             left -= part
         self._quiet = quiet
-        self._push_apart()
+        if there is not None:
+            self._push_apart(there)
 
     def _smooth(self, step: float) -> float:
         """Take a step in which what is open stays open; tell up to which share of it that does.
@@ -223,11 +241,8 @@ class SolidBlocks:
         self._residual = float(np.maximum(self._residual, found.residual))
         self._speeding = found.x.reshape(-1, 6) / bodies.root
 
-    def _points(self, place: Place, step: float) -> tuple[Points, Array, float]:
-        """Find the points of contact about a place, the friction there, and the overlap.
-
-        Gaps are less those drawn, and edges are rounded. The overlap is that of sharp edges.
-        """
+    def _points(self, place: Place, step: float) -> Found:
+        """Find the points of contact about a place."""
         hulls = self.bodies.hulls.placed(*place)
         speed = np.linalg.norm(self._velocities[:, :3], axis=1)
         speed += self.bodies.reach * np.linalg.norm(self._velocities[:, 3:], axis=1)
@@ -240,16 +255,18 @@ class SolidBlocks:
         gaps = sharp + rounded
         near_by = gaps <= way[points.before] + way[points.after]
         points = points._replace(gaps=gaps).at(near_by)
-        return points, self._friction.at(points), -float(sharp.min(initial=0.0))
+        return Found(points, self._friction.at(points), -float(sharp.min(initial=0.0)))
 
-    def _push_apart(self) -> None:
+    def _push_apart(self, there: Found) -> None:
         """Move blocks that overlap apart, as little as contact allows.
 
         Again where that pushed them into others; the place with the least overlap is kept.
+
+        `there`: What meets where they are.
         """
         least, place, overlap = math.inf, self._place, 0.0
         for _ in range(PUSHES):
-            points, friction, sharp = self._points(self._place, 0.0)
+            points, friction, sharp = there
             now = seen(self.bodies, points, self._place, self._place)
             deep = depth(now.gaps)
             if deep < least:
@@ -265,6 +282,7 @@ class SolidBlocks:
                 break
             way = deep * asked.pushed_by(forces).reshape(-1, 6) / self.bodies.root
             self._place = self._place.moved(way)
+            there = self._points(self._place, 0.0)
         self._place = place
         self._penetration = max(self._penetration, overlap)
 
