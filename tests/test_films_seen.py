@@ -55,23 +55,23 @@ def seconds_at(film: Film, number: int) -> float:
 
 def seen_at(film: Film, number: int, points: np.ndarray) -> np.ndarray:
     """Columns and rows of points of space in a frame."""
-    (view,) = film._views
+    view = film.shots[0].view
     share = film.share(seconds_at(film, number))
     places = view.centre + share * (view.places(points) - view.centre)
     return np.column_stack([places[:, 0], film.height - places[:, 1]])
 
 
 def time_of(film: Film, number: int) -> float:
-    (stage,) = film._stages
+    stage = film.shots[0].stage
     return seconds_at(film, number) / math.sqrt(stage.assembly.size / 9.81)
 
 
 def moment_of(film: Film, number: int):
-    return film._stages[0].at(time_of(film, number))
+    return film.shots[0].stage.at(time_of(film, number))
 
 
 def corners_of(film: Film, number: int) -> np.ndarray:
-    return film._stages[0].corners_at(time_of(film, number))
+    return film.shots[0].stage.corners_at(time_of(film, number))
 
 
 def still(problem: Problem, until: float, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -151,7 +151,7 @@ def test_frames_show_what_the_recording_says(kind: str, tmp_path: Path) -> None:
     ran("simulate", *FILMED[kind].split(), *method, "--out", out)
     run = blocksim.load_recording(out)
     film, frames = filmed(run, tmp_path / "film.gif")
-    (stage,) = film._stages
+    stage = film.shots[0].stage
     seen: set[JointState] = set()
     for number in np.linspace(0, film.count - 1, 8).astype(int).tolist():
         moment, picture = moment_of(film, number), frames[number].astype(int)
@@ -180,7 +180,7 @@ def joints_seen(
     found: set[JointState] = set()
     moment = moment_of(film, number)
     marks = drawn_marks(film, number)
-    carried = film._stages[0].faces(moment.turns, moment.places)  # type: ignore[union-attr]
+    carried = film.shots[0].stage.faces(moment.turns, moment.places)  # type: ignore[union-attr]
     for state, faces in zip(moment.joints, carried, strict=True):
         along = faces[0][0] + np.linspace(0.3, 0.7, 9)[:, None] * (faces[0][1] - faces[0][0])
         if np.abs(faces[0] - faces[1]).max() <= 0.02:
@@ -207,7 +207,7 @@ def joints_seen(
 def drawn_marks(film: Film, number: int) -> NDArray[np.float64]:
     """Points along all marks of joints in a frame: column, row, and how far they reach."""
     share = film.share(seconds_at(film, number))
-    (view,) = film._views
+    view = film.shots[0].view
     found = [np.empty((0, 3))]
     for shape in zoomed(view._joints(moment_of(film, number)), share, view.centre):
         start, end = shape.points, np.roll(shape.points, -1, axis=0)
@@ -245,8 +245,8 @@ def test_loads_are_drawn_where_they_act_and_go_with_their_blocks(tmp_path: Path)
         assert not near(frames[number], LIVE, x + 40, y, 12)
     assert near(frames[0], LIVE, film.width - 150, film.height - 10, 120)  # the legend
     quiet = Film([recorded(replace(problem, load=0.0), 0 * moved, times)], height=HEIGHT)
-    assert all(acting.entries == [] for acting in quiet._acting)
-    assert DEAD not in {tone for acting in film._acting for _, tone in acting.entries}
+    assert all(shot.acting.entries == [] for shot in quiet.shots)
+    assert DEAD not in {tone for shot in film.shots for _, tone in shot.acting.entries}
 
 
 def test_a_push_is_one_arrow_in_a_corner_with_its_share_of_the_weight() -> None:
@@ -259,7 +259,7 @@ def test_a_push_is_one_arrow_in_a_corner_with_its_share_of_the_weight() -> None:
     ):  # fmt: skip
         times, moved = still(problem, 1, 2)
         film = Film([recorded(problem, moved, times)], height=720)
-        (acting,), (stage,) = film._acting, film._stages
+        stage, _, _, acting, _ = film.shots[0]
         moment = stage.at(0.0)
         assert acting.entries == []
         assert acting.shapes(moment) == []
@@ -277,7 +277,7 @@ def test_the_pulse_has_its_mark_at_the_time_shown() -> None:
     unit = math.sqrt(problem.assembly.size / 9.81)
     times, moved = still(problem, 1.6 / unit, 33)
     film = Film([recorded(problem, moved, times)], height=720)
-    (acting,), (stage,) = film._acting, film._stages
+    stage, _, _, acting, _ = film.shots[0]
     for seconds, value in ((0.25, 0.4 * math.sin(math.pi / 4)), (0.5, 0.4), (1.2, 0.0)):
         shapes, labels = acting.aside(stage.at(seconds / unit), 1.0)
         (said,) = [label.words for label in labels]
@@ -285,7 +285,7 @@ def test_the_pulse_has_its_mark_at_the_time_shown() -> None:
         assert len(shapes) > 5
     # Marks of what stands still go left by the way of the ground: in 1 s 0.4 g (1 s)^2 / pi.
     way = 0.4 * 9.81 / math.pi / stage.assembly.size
-    (view,) = film._views
+    view = film.shots[0].view
     ends = view.places(np.array([[0.0, 0, 0], [1.0, 0, 0]]))
     pixels = float(ends[1, 0] - ends[0, 0])
     firsts = [
@@ -304,7 +304,7 @@ def test_the_amount_of_a_spread_is_told_in_every_frame() -> None:
     for block, way in ((TOP - 1, -0.5), (TOP, 0.5)):
         moved[:, block, 0] = way * 0.1 * times / COLUMN.assembly.size
     film = Film([recorded(replace(COLUMN, moves=moves), moved, times)], height=HEIGHT)
-    (acting,), (stage,) = film._acting, film._stages
+    stage, _, _, acting, _ = film.shots[0]
     for time in (0.0, 0.3, 1.0):
         _, (label,) = acting.aside(stage.at(time), 1.0)
         assert label.words == f"supports moved {100 * time:.1f} mm"
@@ -318,13 +318,13 @@ def test_side_by_side_begins_near_and_keeps_every_block() -> None:
     alone = Film([far_slider()], height=HEIGHT, slow=1)
 
     def wide(of: Film) -> float:
-        rest = of._stages[0].corners_at(0.0)
-        return float(np.ptp(of._views[0].places(rest)[:, 0])) / of._panels[0].width
+        rest = of.shots[0].stage.corners_at(0.0)
+        return float(np.ptp(of.shots[0].view.places(rest)[:, 0])) / of.shots[0].panel.width
 
     assert wide(film) > 1.5 * wide(alone)
     for seconds in np.linspace(0, film.seconds, 9).tolist():
         share = film.share(seconds)
-        for stage, view, panel in zip(film._stages, film._views, film._panels, strict=True):
+        for stage, view, panel, *_ in film.shots:
             corners = stage.corners_at(seconds / math.sqrt(stage.assembly.size / 9.81))
             places = view.places(corners)
             places = view.centre + share * (places - view.centre)
@@ -338,7 +338,7 @@ def test_what_rounding_moves_does_not_still_move() -> None:
     moved[:10, -1, 0] = 0.02 * np.arange(10)
     for way, rests in ((1e-14, True), (1e-6, False)):
         moved[10:, -1, 0] = 0.2 + way * np.arange(11)
-        (stage,) = Film([recorded(COLUMN, moved, times)], height=HEIGHT)._stages
+        stage = Film([recorded(COLUMN, moved, times)], height=HEIGHT).shots[0].stage
         assert (stage.speed == 0) is rests
 
 
@@ -347,7 +347,7 @@ def test_what_falls_has_no_line_of_thrust_at_rest() -> None:
     times, moved = still(COLUMN, 1, 3)
     for tilt, words in ((0.0, "line of thrust"), (math.radians(20), "nearest line of thrust")):
         film = Film([recorded(COLUMN.tilted(tilt), moved, times)], height=HEIGHT)
-        (stage,) = film._stages
+        stage = film.shots[0].stage
         assert len(stage.thrust) == 1
         assert [told for told, _ in film._entries(set(), thrust=True)] == [f"{words} at rest"]
 
@@ -359,7 +359,7 @@ def test_a_film_ends_with_the_last_block_in_sight(tmp_path: Path) -> None:
     moved[..., 0] = 12.0 * times[:, None]
     run = recorded(problem, moved, times)
     film = Film([run], height=HEIGHT, slow=1)
-    (stage,) = film._stages
+    stage = film.shots[0].stage
     assert film.seconds < stage.end * math.sqrt(stage.assembly.size / 9.81)
     assert film.speed > 0
     last = film.count - 1

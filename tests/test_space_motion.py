@@ -326,7 +326,7 @@ def test_a_film_keeps_all_blocks_in_frame_and_says_whether_they_move() -> None:
     """Corners in pixels, at ten moments."""
     recording = blocksim.simulate(falling_tower(), method="direct", duration=1.0)
     film = Film([recording], height=180)
-    (stage,), (view,) = film._stages, film._views
+    stage, view, *_ = film.shots[0]
     for share in np.linspace(0, 1, 10):
         seconds = float(share) * film.seconds
         places = view.places(stage.corners_at(seconds / recording.problem.seconds))

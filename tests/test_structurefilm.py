@@ -54,7 +54,7 @@ def lifted(problem: Problem, turn: float = 0.5) -> Recording:
 
 
 def view_of(film: Film) -> PlanarView:
-    view = film._views[0]
+    view = film.shots[0].view
     assert isinstance(view, PlanarView)
     return view
 
@@ -142,7 +142,7 @@ def test_what_slides_far_is_seen_to_lie_on_its_support() -> None:
     way[:, 2, 0] = np.linspace(0, 3.5, 11) / size  # the hexagon, to x = 108.5 m at its right
     film = Film([recording(problem, way)], height=360)
     frame = film.frame(film.count - 1)
-    (slab,) = film._stages[0].footings
+    (slab,) = film.shots[0].stage.footings
     assert slab[:, 0].max() > 108.5 / size
     for x in (100.0, 104.0, 108.4):
         under = pixel(film, frame, np.array([x, -0.15]) / size)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any, BinaryIO, Literal
+from typing import Any, BinaryIO, Literal, NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -43,6 +43,21 @@ SAMPLES = 200
 """Times at which it is seen whether blocks leave the picture."""
 
 
+class Shot(NamedTuple):
+    """A recording as it is shown: where, what is drawn of it, and its outcome in words."""
+
+    stage: Stage | SolidStage
+    view: View
+    panel: Panel
+    acting: Acting
+    verdict: str
+
+    def corners_at(self, seconds: float) -> Array:
+        """Return where the corners of blocks are in the picture at a time [s], (k, 2)."""
+        stage = self.stage
+        return self.view.places(stage.corners_at(seconds / stage.unit).reshape(-1, 3))
+
+
 class Film:
     """Frames drawn from recordings alone: equal recordings give equal frames.
 
@@ -61,6 +76,7 @@ class Film:
     `count`: Number of frames.
     `metric`: Whether lengths and times are shown in metres and seconds: unless all are arches
         with a radius of 1, which stands for none given. Then they are in r and sqrt(r/g).
+    `shots`: Of each recording.
     `moves`: Whether each recording is seen to move.
     `speed`: Of the fastest corner as it ends [m/s]; 0 where all lie still.
     """
@@ -78,35 +94,33 @@ class Film:
         self.height = 2 * (height // 2)
         self.width = 2 * round(height * 8 / 9)
         self.rate = rate
-        self._words = [verdict_words(recording) for recording in recordings]
         # Blocks in space are seen in perspective, however it is asked.
         self._flat = view == "2d" and not any(each.problem.in_space for each in recordings)
         # Side by side there is less room beside the blocks; the camera draws back for them.
         near = 1.0 if len(recordings) == 1 else NEAR
-        self._stages = [stage_of(each, near) for each in recordings]
+        stages = [stage_of(each, near) for each in recordings]
         # An arch of which no radius was given is shown in units of it.
         self.metric = any(recording.problem.has_size for recording in recordings)
-        self.moves = [stage.moves for stage in self._stages]
-        self.speed = max(stage.speed for stage in self._stages)
+        self.moves = [stage.moves for stage in stages]
+        self.speed = max(stage.speed for stage in stages)
         self._size = self.height / TALL
-        self._panels = self._arrange()
         kind: Any = PlanarView if self._flat else SpatialView
         # One scale for all, so that they can be compared.
-        framed = [*self._stages, *map(stage_of, beside)]
+        framed = [*stages, *map(stage_of, beside)]
         shown = np.concatenate([stage.swept - [stage.middle, 0.0, 0.0] for stage in framed])
-        self._views: list[View] = [
-            kind(stage, panel, shown)
-            for stage, panel in zip(self._stages, self._panels, strict=True)
-        ]
+        self.shots: list[Shot] = []
+        for stage, panel in zip(stages, self._arrange(len(stages)), strict=True):
+            seen = kind(stage, panel, shown)
+            acting, said = (
+                Acting(stage, seen, panel, self._size),
+                verdict_words(stage.recording),
+            )
+            self.shots.append(Shot(stage, seen, panel, acting, said))
         self.seconds = self._duration()
         self.slow = slowness(self.seconds) if slow is None else slow
         self._canvas = Canvas(self.width, self.height)
-        self._acting = [
-            Acting(stage, view, panel, self._size)
-            for stage, view, panel in zip(self._stages, self._views, self._panels, strict=True)
-        ]
         self._shares = self._drawn_back()
-        states = {state for stage in self._stages for state in stage.states}
+        states = {state for stage in stages for state in stage.states}
         self._canvas.keep(*self._still(states, thrust=True))
         self._last: tuple[float, NDArray[np.uint8]] | None = None
         self.count = 1 + round(rate * (BEFORE + self.seconds * self.slow + AFTER))
@@ -139,7 +153,7 @@ class Film:
     def _pose(self, at: float | None) -> None:
         """Draw one frame with a legend of what is seen in it."""
         seconds = self._within(self.seconds if at is None else at * self._tick)
-        moments = [stage.at(seconds / stage.unit) for stage in self._stages]
+        moments = [shot.stage.at(seconds / shot.stage.unit) for shot in self.shots]
         seen = {state for moment in moments for state in moment.joints}
         at_rest = any(moment.statics > 0 for moment in moments)
         self._canvas.keep(*self._still(seen, thrust=at_rest))
@@ -153,9 +167,9 @@ class Film:
         """Find times [s], and shares of their size at which all blocks are in the picture."""
         times = np.linspace(0.0, self.seconds, SAMPLES)
         shares = np.ones(len(times))
-        for stage, view, panel in zip(self._stages, self._views, self._panels, strict=True):
-            for at, seconds in enumerate(times.tolist() if stage.moves else []):
-                share = needed(_seen(stage, view, seconds), panel, view.centre)
+        for shot in self.shots:
+            for at, seconds in enumerate(times.tolist() if shot.stage.moves else []):
+                share = needed(shot.corners_at(seconds), shot.panel, shot.view.centre)
                 shares[at] = min(shares[at], share)
         if shares.min() == 1:
             return None
@@ -168,8 +182,7 @@ class Film:
     def _draw(self, seconds: float) -> None:
         parts, labels = list[Part](), list[Label]()
         share = self.share(seconds)
-        each = zip(self._stages, self._views, self._acting, self._panels, strict=True)
-        for stage, view, acting, panel in each:
+        for stage, view, panel, acting, _ in self.shots:
             moment = stage.at(seconds / stage.unit)
             around = list[Shape]()
             if self._shares is not None:
@@ -196,8 +209,8 @@ class Film:
 
     def _duration(self) -> float:
         """Seconds shown: until the last of those that move has ended, or is out of sight."""
-        ends = [stage.end * stage.unit for stage in self._stages]
-        moving = [end for end, stage in zip(ends, self._stages, strict=True) if stage.moves]
+        ends = [shot.stage.end * shot.stage.unit for shot in self.shots]
+        moving = [end for end, moves in zip(ends, self.moves, strict=True) if moves]
         last = max(moving or ends)
         if self._lost(last):
             times = np.linspace(0.0, last, SAMPLES).tolist()
@@ -206,18 +219,15 @@ class Film:
 
     def _lost(self, seconds: float) -> bool:
         """Tell whether all that moves has left the picture, however far that is."""
-        views = zip(self._stages, self._views, self._panels, strict=True)
-        moving = [each for each in views if each[0].moves]
+        moving = [shot for shot in self.shots if shot.stage.moves]
         return bool(moving) and all(
-            is_lost(_seen(stage, view, seconds), panel, view.centre)
-            for stage, view, panel in moving
+            is_lost(shot.corners_at(seconds), shot.panel, shot.view.centre) for shot in moving
         )
 
-    def _arrange(self) -> list[Panel]:
+    def _arrange(self, count: int) -> list[Panel]:
         head, foot = HEAD * self._size, FOOT * self._size
-        wide = self.width / len(self._stages)
-        tall = self.height - head - foot
-        return [Panel(i * wide, foot, wide, tall) for i in range(len(self._stages))]
+        wide, tall = self.width / count, self.height - head - foot
+        return [Panel(i * wide, foot, wide, tall) for i in range(count)]
 
     def _still(
         self, states: set[JointState], *, thrust: bool
@@ -226,8 +236,7 @@ class Film:
         parts: list[Part] = []
         labels: list[Label] = []
         size = self._size
-        each = zip(self._stages, self._views, self._panels, self._words, strict=True)
-        for stage, view, panel, verdict in each:
+        for stage, view, panel, _, verdict in self.shots:
             pull, name = gravity_arrow(stage, view, panel, size)
             around = list[Shape]()
             if self._shares is None:
@@ -240,9 +249,9 @@ class Film:
             labels += [*name, *title(stage, panel, verdict, self.height, size, moving=moving)]
         whole = Panel(0, 0, self.width, self.height)
         lines = [
-            Shape(np.array([[panel.x, panel.y], [panel.x, self.height]]),
+            Shape(np.array([[shot.panel.x, shot.panel.y], [shot.panel.x, self.height]]),
                   edge=colour(INK, 0.25), width=1, closed=False)
-            for panel in self._panels[1:]
+            for shot in self.shots[1:]
         ]  # fmt: skip
         legend, words = legend_of(self._entries(states, thrust=thrust), self.width, size)
         return [*parts, (whole, [*lines, *legend])], [*labels, *words, self._pace()]
@@ -266,20 +275,16 @@ class Film:
 
     def _entries(self, states: set[JointState], *, thrust: bool) -> list[tuple[str, str]]:
         """Return words and colours of what occurs."""
-        is_arch = all(stage.is_arch for stage in self._stages)
+        stages = [shot.stage for shot in self.shots]
+        is_arch = all(stage.is_arch for stage in stages)
         told = [words_of(state, is_arch=is_arch) for state in JOINTS if state in states]
-        if thrust and any(stage.thrust for stage in self._stages):
-            rests = all(stage.carried is None or stage.carried.stands for stage in self._stages)
+        if thrust and any(stage.thrust for stage in stages):
+            rests = all(stage.carried is None or stage.carried.stands for stage in stages)
             told.append((f"{'' if rests else 'nearest '}line of thrust at rest", THRUST))
-        told += [entry for acting in self._acting for entry in acting.entries]
+        told += [entry for shot in self.shots for entry in shot.acting.entries]
         return list(dict.fromkeys(told))
 
 
 def stage_of(recording: Recording[Any], near: float = 1.0) -> Stage | SolidStage:
     """Make a recording ready for the eye, in the plane or in space."""
     return (SolidStage if recording.problem.in_space else Stage)(recording, near)
-
-
-def _seen(stage: Stage | SolidStage, view: View, seconds: float) -> Array:
-    """Return where the corners of blocks are in the picture at a time [s], (k, 2)."""
-    return view.places(stage.corners_at(seconds / stage.unit).reshape(-1, 3))
