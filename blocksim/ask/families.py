@@ -43,26 +43,15 @@ LEANEST = 89.999
 class Family(Generic[Blocks]):
     """A problem for each value of one parameter.
 
-    Parameters
-    ----------
-    problem : Problem
-        What it is a family of.
-    name, unit : str
-    at : callable
-        Value to problem.
-    low, high : float
-        Range of values that make sense.
-    stands : {"low", "high"}
-        At which end of a bracket it stands.
-    standing : callable
-        The values at which forces of equilibrium exist, by limit analysis. None where it does
-        not know them.
-    remark : callable
-        What else limit analysis saw on the way, to be added to a reason.
-    start : float or None
-        Where an engine begins its search if limit analysis knows no value.
-    spreading : Spreading or None
-        Where the parameter is the motion of supports.
+    `problem`: What it is a family of.
+    `at`: Value to problem.
+    `low`, `high`: Range of values that make sense.
+    `stands`, {"low", "high"}: At which end of a bracket it stands.
+    `standing`: The values at which forces of equilibrium exist, by limit analysis. None where
+        it does not know them.
+    `remark`: What else limit analysis saw on the way, to be added to a reason.
+    `start`: Where an engine begins its search if limit analysis knows no value.
+    `spreading`: Where the parameter is the motion of supports.
     """
 
     problem: Problem[Blocks]
@@ -115,16 +104,8 @@ class Family(Generic[Blocks]):
 def family_of(problem: Problem[Any], over: str) -> Family[Any]:
     """Return the family of a problem over one parameter.
 
-    Parameters
-    ----------
-    problem : Problem
-    over : str
-        One of `families_of`; makers call mu `friction`.
-
-    Raises
-    ------
-    InputError
-        If there is no such parameter, or nothing to multiply.
+    `over`: One of `families_of`; makers call mu `friction`.
+    Raises `InputError`: If there is no such parameter, or nothing to multiply.
     """
     known = families_of(problem)
     over = "mu" if over == "friction" else over

@@ -128,15 +128,9 @@ class Bodies(ABC):
     def displacement(self, moved: Array) -> Array:
         """Bound of the displacement of any corner, from those of the centres.
 
-        Parameters
-        ----------
-        moved : (..., blocks, 3 or 6) float
-            Displacements of the centres, in units of the size, and rotations.
-
-        Returns
-        -------
-        (...) float
-            Largest over the blocks of the translation or a corner's way by rotation.
+        `moved`, (..., blocks, 3 or 6): Displacements of the centres, in units of the size, and
+            rotations.
+        Returns (...): Largest over the blocks of the translation or a corner's way by rotation.
         """
         square = moved**2
         first, *ways = (square[..., at] for at in range(self.dimensions))

@@ -88,21 +88,14 @@ class Settings:
 class Quality:
     """How well a motion has kept contact and friction; None where the engine cannot tell.
 
-    Parameters
-    ----------
-    residual : float or None
-        Worst imbalance, penetration rate or complementarity in any step [g].
-    penetration : float or None
-        Deepest overlap of two blocks, in units of the size.
-    gain : float or None
-        Most by which the energy was above that at the release, as a share of what fell.
-    error : float or None
-        How far corners were off by then, estimated [size] (`blocksim.simulation.repeating`).
-    late : float or None
-        How early or late they went by a hundredth of the size, estimated [sqrt(size/g)]; None
-        where they did not.
-    known : float or None
-        Time from which they may be off by more than a hundredth of the size
+    `residual`: Worst imbalance, penetration rate or complementarity in any step [g].
+    `penetration`: Deepest overlap of two blocks, in units of the size.
+    `gain`: Most by which the energy was above that at the release, as a share of what fell.
+    `error`: How far corners were off by then, estimated [size]
+        (`blocksim.simulation.repeating`).
+    `late`: How early or late they went by a hundredth of the size, estimated [sqrt(size/g)];
+        None where they did not.
+    `known`: Time from which they may be off by more than a hundredth of the size
         [sqrt(size/g)]; None where there is none.
     """
 
@@ -122,15 +115,9 @@ class World(Protocol):
 
         Impulses are kept, so that a further call goes on where this one stopped.
 
-        Parameters
-        ----------
-        sweeps : int
-            Sweeps over all contacts.
-
-        Returns
-        -------
-        (blocks, 3 or 6) float
-            Accelerations [g] and [g/size] the blocks would start with, columns as poses.
+        `sweeps`: Sweeps over all contacts.
+        Returns (blocks, 3 or 6): Accelerations [g] and [g/size] the blocks would start with,
+            columns as poses.
         """
         ...
 
@@ -159,12 +146,9 @@ class TakesForces(World, Protocol):
         Coulomb's law may allow both rest and motion, and which of them is found depends on
         where the search for impulses begins.
 
-        Parameters
-        ----------
-        forces : (joints, 2, 2) or (points, 3) float
-            At the inner and the outer end of each joint, along its normal and its tangent, as
-            they act on `after`; in space at the points of `JointPoints`, along their axes
-            [mean weights].
+        `forces`, (points, 3): At the inner and the outer end of each joint, along its normal
+            and its tangent, as they act on `after`; in space at the points of `JointPoints`,
+            along their axes [mean weights].
         """
         ...
 
@@ -183,10 +167,8 @@ class TellsForces(World, Protocol):
     def resultants(self) -> Array:
         """Return what each joint carried in the step solved last, as it acts on `after`.
 
-        Returns
-        -------
-        (joints, 3) float
-            Force x, y and moment about the origin [mean weights, times the size].
+        Returns (joints, 3): Force x, y and moment about the origin [mean weights, times the
+            size].
         """
         ...
 
@@ -202,25 +184,16 @@ def trusted(world: World, settings: Settings) -> bool:
 class Method:
     """A way to answer, and what it can do.
 
-    Parameters
-    ----------
-    name : str
-        As on the command line.
-    sees : str
-        What it can tell.
-    finest : float
-        Smallest relative width of a bracket it can answer for; its error is less.
-    moves_supports : bool
-        Whether it can follow supports that move.
-    adjustable : tuple of str
-        Settings that a user may give instead of what its rule says. With `accuracy` its motion
-        says how right it is.
-    chart : mapping of str to tuple of float
-        Settings from coarse to fine that the chart of error against time tries, by what is
+    `name`: As on the command line.
+    `sees`: What it can tell.
+    `finest`: Smallest relative width of a bracket it can answer for; its error is less.
+    `moves_supports`: Whether it can follow supports that move.
+    `adjustable`: Settings that a user may give instead of what its rule says. With `accuracy`
+        its motion says how right it is.
+    `chart`: Settings from coarse to fine that the chart of error against time tries, by what is
         refined (`blocksim.studies.refinement`).
-    colour, tint, marker : str
-        How it is drawn where methods are compared: Okabe and Ito's palette, lightened for
-        areas, and a shape of points, so that colour never stands alone.
+    `colour`, `tint`, `marker`: How it is drawn where methods are compared: Okabe and Ito's
+        palette, lightened for areas, and a shape of points, so that colour never stands alone.
     """
 
     name: str
@@ -248,51 +221,34 @@ class Method:
 class Engine(Method):
     """A method that sets blocks in motion.
 
-    Parameters
-    ----------
-    library : str
-        Module it needs.
-    remedy : str
-        How to install that.
-    version_of : callable
-        Gives the version of the library, which has to be there.
-    rule : callable
-        Chooses settings that suit an assembly.
-    build : callable
-        Puts the blocks of a problem into the engine, all contacts closed, at rest.
-    rule_in_space, build_in_space : callable or None
-        The same of blocks in space, in worlds that are `TakesForces`; None where it moves none
-        there.
-    most_friction, most_friction_in_space : float
-        Friction above which the engine takes this instead.
-    shakes : bool
-        Whether its ground can shake, and blocks may begin in motion (`TakesVelocities`).
-    finds_rest : bool
-        Whether rest is found wherever it is possible, from any beginning.
-    takes_forces, tells_forces : bool
-        Whether its worlds are also `TakesForces` and `TellsForces`. Fewer blocks than all ask
-        for the second.
-    keeps_impulses : bool
-        Whether its worlds go on from forces that are given, also from such that do not balance.
-    reduces : bool
-        Whether arches are reduced where nothing else is said: shown to be right, and faster.
-    merges : bool
-        The same of the blocks of other structures.
-    contacts : int
-        Contacts of a joint.
-    usual_sweeps : int
-        Sweeps in a step that users of the library take; one where a step is solved to its
-        end.
-    validates : tuple of str
-        Parts of `validate` it is asked in where no engine is named: "arches", "structures".
-    validated_to : float
-        Relative width of the brackets that `validate` asks it for, of arches.
-    aside : float
-        Share of a known value by which `validate` goes to either side of it, of structures.
-    beside : tuple of float
-        Steps of the runs by which the error of a motion is told, in those of the motion.
-    most_blocks : int
-        Blocks up to which `validate` asks it: it takes minutes for more.
+    `library`: Module it needs.
+    `remedy`: How to install that.
+    `version_of`: Gives the version of the library, which has to be there.
+    `rule`: Chooses settings that suit an assembly.
+    `build`: Puts the blocks of a problem into the engine, all contacts closed, at rest.
+    `rule_in_space`, `build_in_space`: The same of blocks in space, in worlds that are
+        `TakesForces`; None where it moves none there.
+    `most_friction`, `most_friction_in_space`: Friction above which the engine takes this
+        instead.
+    `shakes`: Whether its ground can shake, and blocks may begin in motion (`TakesVelocities`).
+    `finds_rest`: Whether rest is found wherever it is possible, from any beginning.
+    `takes_forces`, `tells_forces`: Whether its worlds are also `TakesForces` and `TellsForces`.
+        Fewer blocks than all ask for the second.
+    `keeps_impulses`: Whether its worlds go on from forces that are given, also from such that
+        do not balance.
+    `reduces`: Whether arches are reduced where nothing else is said: shown to be right, and
+        faster.
+    `merges`: The same of the blocks of other structures.
+    `contacts`: Contacts of a joint.
+    `usual_sweeps`: Sweeps in a step that users of the library take; one where a step is solved
+        to its end.
+    `validates`: Parts of `validate` it is asked in where no engine is named: "arches",
+        "structures".
+    `validated_to`: Relative width of the brackets that `validate` asks it for, of arches.
+    `aside`: Share of a known value by which `validate` goes to either side of it, of
+        structures.
+    `beside`: Steps of the runs by which the error of a motion is told, in those of the motion.
+    `most_blocks`: Blocks up to which `validate` asks it: it takes minutes for more.
     """
 
     library: str

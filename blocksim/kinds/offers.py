@@ -24,12 +24,8 @@ if TYPE_CHECKING:
 class Static:
     """A verdict without motion.
 
-    Parameters
-    ----------
-    joints : tuple of ObservedJoint
-        What each joint does as a collapse starts.
-    mode : Any
-        What the maker calls the mode of collapse; None where nothing is known of it.
+    `joints`: What each joint does as a collapse starts.
+    `mode`: What the maker calls the mode of collapse; None where nothing is known of it.
     """
 
     verdict: Verdict
@@ -44,22 +40,13 @@ class Threshold:
     The search is over a number of the maker's own, a ratio, which `value` turns into the
     parameter.
 
-    Attributes
-    ----------
-    name : str
-        Of the number.
-    low, high : float
-        Its range.
-    start : float
-        Where a search begins.
-    exact : float or None
-        Its value by statics; 0 where all values stand, None where none does.
-    unit : str
-        Of the parameter.
-    blocks : int
-        How many there are.
-    reduced_by : str
-        What a reduction does, in words.
+    `name`: Of the number.
+    `low`, `high`: Its range.
+    `start`: Where a search begins.
+    `exact`: Its value by statics; 0 where all values stand, None where none does.
+    `unit`: Of the parameter.
+    `blocks`: How many there are.
+    `reduced_by`: What a reduction does, in words.
     """
 
     name: str
@@ -97,12 +84,8 @@ class Threshold:
     ) -> Any:
         """Return what the maker adds to the answer.
 
-        Parameters
-        ----------
-        low, high : float or None
-            Numbers that fell and that stood.
-        seen : Observation or None
-            What an engine showed of the one that fell.
+        `low`, `high`: Numbers that fell and that stood.
+        `seen`: What an engine showed of the one that fell.
         """
         raise NotImplementedError
 
@@ -152,12 +135,8 @@ def carried_of(
     None in space, and where the ground shakes: statics in the plane do not tell what happens
     then.
 
-    Parameters
-    ----------
-    joint : int, optional
-        Where thrust is told; by default the crown.
-    needed : Needed, optional
-        The least strength of blocks that crush.
+    `joint`: Where thrust is told; by default the crown.
+    `needed`: The least strength of blocks that crush.
     """
     if problem.in_space or not problem.has_statics:
         return None

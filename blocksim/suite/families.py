@@ -37,25 +37,14 @@ FRAMES = 10
 class Family:
     """A structure for each value of one parameter. Fields are the keys of the file.
 
-    Parameters
-    ----------
-    name, group : str
-    over : str
-        The parameter: load, tilt, mu, or one of the structure's kind.
-    stands : {"low", "high"}
-        At which end it stands.
-    critical : float
-        The value at which that changes.
-    structure : dict
-        A structure file's content.
-    known : str
-        Where the critical value comes from, if not from limit analysis.
-    tilt_deg : float
-        By which the table is tilted.
-    azimuth_deg : float
-        Of blocks in space, towards where, from x towards y.
-    foot : float or None
-        Depth to which supports behind springings are cut: those of an arch that is nearly a
+    `over`: The parameter: load, tilt, mu, or one of the structure's kind.
+    `stands`, {"low", "high"}: At which end it stands.
+    `critical`: The value at which that changes.
+    `structure`: A structure file's content.
+    `known`: Where the critical value comes from, if not from limit analysis.
+    `tilt_deg`: By which the table is tilted.
+    `azimuth_deg`: Of blocks in space, towards where, from x towards y.
+    `foot`: Depth to which supports behind springings are cut: those of an arch that is nearly a
         ring would meet [m].
     """
 

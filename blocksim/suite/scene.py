@@ -25,25 +25,15 @@ BOUND = 0.05
 class Body:
     """A rigid body, homogeneous, of one convex shape or several that move as one.
 
-    Parameters
-    ----------
-    name : str
-    shapes : tuple of (k, 2 or 3) float
-        Corners [m]: of polygons, counter-clockwise; of polyhedra, whose hull they are.
-    mass : float
-        [kg]; 0 of a body that is fixed.
-    faces : tuple of tuple of tuple of int
-        Of each polyhedron the corners around each face, counter-clockwise seen from outside.
-    centre : (2 or 3,) float
-        Centre of mass [m].
-    inertia : float or (3, 3) float
-        About the centre of mass [kg m^2].
-    depth : float
-        Of a polygon, out of the plane [m].
-    velocity : (2 or 3,) float
-        At the start [m/s].
-    spin : float or (3,) float
-        Angular velocity at the start [rad/s].
+    `shapes`: Corners [m]: of polygons, counter-clockwise; of polyhedra, whose hull they are.
+    `mass`: [kg]; 0 of a body that is fixed.
+    `faces`: Of each polyhedron the corners around each face, counter-clockwise seen from
+        outside.
+    `centre`, (2 or 3,): Centre of mass [m].
+    `inertia`, float or (3, 3): About the centre of mass [kg m^2].
+    `depth`: Of a polygon, out of the plane [m].
+    `velocity`, (2 or 3,): At the start [m/s].
+    `spin`, float or (3,): Angular velocity at the start [rad/s].
     """
 
     name: str
@@ -95,18 +85,12 @@ class Push:
 class Scene:
     """A scene, as an engine is given it.
 
-    Parameters
-    ----------
-    level : float or None
-        How far it is from the limit [%]; None where its motion is asked for.
-    gravity : (2 or 3,) float
-        [m/s^2]
-    friction : float
-        Coefficient between any two bodies.
-    times : (frames,) float
-        When poses are asked for [s]; the last is the scene's duration.
-    bound : float
-        Way of a corner up to which a body counts as standing [m]; 0 where motion is asked for.
+    `level`: How far it is from the limit [%]; None where its motion is asked for.
+    `gravity`, (2 or 3,): [m/s^2]
+    `friction`: Coefficient between any two bodies.
+    `times`, (frames,): When poses are asked for [s]; the last is the scene's duration.
+    `bound`: Way of a corner up to which a body counts as standing [m]; 0 where motion is asked
+        for.
     """
 
     name: str

@@ -103,26 +103,15 @@ Overrides = tuple[tuple[str, float], ...]
 class Case(NamedTuple):
     """One question about one structure.
 
-    Parameters
-    ----------
-    kind : str
-    given : tuple of (str, value)
-        What the design sets: parameters of the kind (`arch.thickness`: of its arch), `mu`, and
-        what acts on it, of `ACTING`. `ratio` of an arch is its thickness over the least
+    `given`: What the design sets: parameters of the kind (`arch.thickness`: of its arch), `mu`,
+        and what acts on it, of `ACTING`. `ratio` of an arch is its thickness over the least
         thickness of the voussoirs as built.
-    method : str
-    over : str or None
-        Parameter to bracket over; None: does it stand?
-    rest : str
-        JSON of what all cases of a design have in common: tables, loads, density.
-    band : float
-        An engine simulates arches within this share of their least thickness.
-    tol : float
-        Relative width of a bracket; 0 where nothing is bracketed.
-    confirm : bool
-        Let blocks go at both ends of an engine's bracket.
-    settings : tuple of (str, float)
-        Given to the engine instead of what its rule says.
+    `over`: Parameter to bracket over; None: does it stand?
+    `rest`: JSON of what all cases of a design have in common: tables, loads, density.
+    `band`: An engine simulates arches within this share of their least thickness.
+    `tol`: Relative width of a bracket; 0 where nothing is bracketed.
+    `confirm`: Let blocks go at both ends of an engine's bracket.
+    `settings`: Given to the engine instead of what its rule says.
     """
 
     kind: str
