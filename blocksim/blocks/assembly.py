@@ -19,6 +19,7 @@ from blocksim.blocks.block import Joint as Joint
 from blocksim.blocks.block import Support as Support
 from blocksim.blocks.block import frozen as frozen
 from blocksim.blocks.corners import carrying_faces
+from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.rows import Rows, column
 from blocksim.common.checks import LENGTH
 
@@ -205,6 +206,17 @@ class Assembly(Bodies):
         inertia = np.array(column(self.blocks, "inertia")) / self.size**2
         found = np.column_stack([mass, mass, inertia])
         return frozen(found / mass.mean(), (-1, 3))
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weights of the blocks [N], (blocks,)."""
+        return frozen(np.array(column(self.blocks, "mass")) * STANDARD_GRAVITY, (-1,))
+
+    @cached_property
+    def volumes(self) -> Array:
+        """Volumes of the blocks [m3], (blocks,)."""
+        areas = [sum(abs(signed_area(each)) for each in one.polygons) for one in self.blocks]
+        return frozen(np.array(areas) * column(self.blocks, "depth"), (-1,))
 
     @cached_property
     def unit_force(self) -> float:

@@ -7,8 +7,7 @@ from dataclasses import asdict, replace
 from typing import Any
 
 from blocksim.arch.dimensions import require_unit_weight
-from blocksim.blocks.outlines import signed_area
-from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import (
     fill_density,
     remade,
@@ -130,9 +129,7 @@ def under_road(problem: Problem, loading: Loading) -> Problem:
         # They are borne by supports that are drawn.
         maker = problem.maker.but(on_supports=True)
         problem = replace(remade(problem, maker), title=problem.title or maker.name)
-    blocks = problem.assembly.blocks
-    volume = sum(abs(signed_area(part)) * b.depth for b in blocks for part in b.polygons)
-    density = sum(block.mass for block in blocks) * STANDARD_GRAVITY / volume
+    density = float(problem.assembly.weights.sum() / problem.assembly.volumes.sum())
     weights = ("fill_unit_weight", "fill_region", "fill_layer", "backing", "point_load",
                "patch_load")  # fmt: skip
     in_kilonewtons = [name for name in loading.on_road if name in weights]

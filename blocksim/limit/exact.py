@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
+from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.rows import column
 
 SLACK = Fraction(1, 10**12)
@@ -59,7 +59,7 @@ class Exact:
         self.friction: list[Fraction | None] = [
             None if each == math.inf else Fraction(each) for each in problem.friction.tolist()
         ]
-        self.weights = [Fraction(each) for each in _weights(problem)]
+        self.weights = [Fraction(each) for each in assembly.weights.tolist()]
         down = [Fraction(each) for each in problem.gravity[: self.axes].tolist()]
         turns = [NOTHING] * len(moment(down, down))
         pull = [[*(weight * way for way in down), *turns] for weight in self.weights]
@@ -183,11 +183,3 @@ def _across(joints: Sequence[Any]) -> Array:
     """Return the normals of corners in the plane, (joints, 2)."""
     return np.array([(0.0, 0.0) if each is None else each.tolist()
                      for each in column(joints, "across")])  # fmt: skip
-
-
-def _weights(problem: Problem[Any]) -> list[float]:
-    """Return the weights of blocks [N], as files say them."""
-    if problem.in_space:
-        return problem.assembly.weights.tolist()
-    masses: list[float] = np.asarray(column(problem.assembly.blocks, "mass")).tolist()
-    return [mass * STANDARD_GRAVITY for mass in masses]

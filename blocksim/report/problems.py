@@ -164,9 +164,7 @@ def is_metric(arch: Arch, at: At | None = None) -> bool:
 
 def weight_of(problem: Problem[Any]) -> float:
     """Weight of all blocks [N]."""
-    if problem.in_space:
-        return float(problem.assembly.weights.sum())
-    return sum(block.mass for block in problem.assembly.blocks) * STANDARD_GRAVITY
+    return float(problem.assembly.weights.sum())
 
 
 def _live(problem: Problem[Any]) -> float:

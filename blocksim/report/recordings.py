@@ -81,7 +81,7 @@ def recording_document(recording: Recording[Any]) -> dict[str, Any]:
                 "weight_N": weight,
             }
             for name, block, weight in zip(
-                names, assembly.blocks, _weights(recording), strict=True
+                names, assembly.blocks, assembly.weights.tolist(), strict=True
             )
         ],
         "joints": [
@@ -106,14 +106,6 @@ def _shape(body: Any) -> dict[str, Any]:
     if isinstance(body, SolidBlock):
         return {"polyhedra_m": _lists(hull.corners for hull in body.hulls)}
     return {"polygons_m": _lists(body.polygons)}
-
-
-def _weights(recording: Recording[Any]) -> list[float]:
-    """Return the weights of the blocks [N]."""
-    assembly = recording.assembly
-    if recording.problem.in_space:
-        return assembly.weights.tolist()
-    return [block.mass * STANDARD_GRAVITY for block in assembly.blocks]
 
 
 def _ends(joint: Joint | FaceJoint) -> dict[str, Any]:

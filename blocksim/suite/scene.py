@@ -190,13 +190,8 @@ def _solid(block: SolidBlock, *, fixed: bool) -> Body:
 def acting(problem: Problem[Any]) -> tuple[Array, tuple[Push, ...]]:
     """Return gravity [m/s^2], with body forces on all blocks, and pushes on single ones [N]."""
     spatial = problem.in_space
-    blocks = problem.assembly.blocks
+    blocks, weights = problem.assembly.blocks, problem.assembly.weights.tolist()
     gravity, pushes = problem.gravity[: 3 if spatial else 2].copy(), list[Push]()
-    weights = (
-        problem.assembly.weights
-        if spatial
-        else [STANDARD_GRAVITY * block.mass for block in problem.assembly.blocks]
-    )
     for factor, loads in ((1.0, problem.dead), (problem.load, problem.live)):
         for load in loads:
             if load.per_weight and len(load.blocks) == len(blocks):

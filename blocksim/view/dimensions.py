@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.outlines import signed_area
-from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.blocks.problem import Problem
 from blocksim.kinds.archkind import CurvedArch
 from blocksim.kinds.circular import CircularArch
 
@@ -243,15 +242,7 @@ def unit_weight(problem: Problem[Any]) -> float | None:
         return None
     if problem.maker is not None:
         return problem.maker.unit_weight
-    if problem.in_space:
-        return float(np.median(problem.assembly.weights / problem.assembly.volumes))
-    weights = [
-        block.mass
-        * STANDARD_GRAVITY
-        / (sum(abs(signed_area(part)) for part in block.polygons) * block.depth)
-        for block in problem.assembly.blocks
-    ]
-    return float(np.median(weights))
+    return float(np.median(problem.assembly.weights / problem.assembly.volumes))
 
 
 def number(value: float) -> str:
