@@ -10,11 +10,11 @@ from __future__ import annotations
 import io
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from blocksim.blocks.assembly import Array, frozen
 from blocksim.common.checks import Range, require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import AnyPath, read_file
+
+if TYPE_CHECKING:
+    from blocksim.blocks.entries import ShakeEntry
 
 SHAPES: dict[str, Callable[[float], float]] = {
     "constant": lambda share: share,
@@ -165,22 +168,14 @@ def table_of(times: Array, accelerations: Array, upwards: Array | None = None) -
     return Shaking(shape=TABLE, amplitude=amplitude, duration=duration, table=rows)
 
 
-def shaking_of(
-    *,
-    shape: str | None = None,
-    amplitude_g: float | None = None,
-    duration_s: float | None = None,
-    times_s: Sequence[float] | None = None,
-    accelerations_g: Sequence[float] | None = None,
-    verticals_g: Sequence[float] | None = None,
-) -> Shaking:
+def shaking_of(said: ShakeEntry) -> Shaking:
     """Make what `shake` of a structure file says: a shape, or accelerations over time."""
-    pulse = {"shape": shape, "amplitude_g": amplitude_g, "duration_s": duration_s}
-    table = {"times_s": times_s, "accelerations_g": accelerations_g}
-    given, others = (table, pulse) if times_s is not None else (pulse, table)
-    if given is pulse or verticals_g is not None:
+    pulse = {name: getattr(said, name) for name in ("shape", "amplitude_g", "duration_s")}
+    table = {"times_s": said.times_s, "accelerations_g": said.accelerations_g}
+    given, others = (table, pulse) if said.times_s is not None else (pulse, table)
+    if given is pulse or said.verticals_g is not None:
         # It may be left out of a table.
-        table["verticals_g"] = verticals_g
+        table["verticals_g"] = said.verticals_g
     beside = "times_s" if given is table else "shape"
     for name, value in others.items():
         require(value is None, f"shake.{name}", "given", f"left out beside {beside}")
@@ -190,10 +185,9 @@ def shaking_of(
     try:
         if given is table:
             return table_of(*(np.array(each, dtype=float) for each in table.values()))
+        shape, amplitude, duration = pulse.values()
         require(shape in SHAPES, "shape", shape, f"one of {', '.join(SHAPES)}")
-        return Shaking(
-            shape=str(shape), amplitude=amplitude_g or 0.0, duration=duration_s or 0.0
-        )
+        return Shaking(shape=shape, amplitude=amplitude, duration=duration)
     except InputError as error:
         field = {"amplitude": "amplitude_g", "duration": "duration_s"}.get(error.field)
         field = f"shake.{field or error.field}"

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -121,7 +121,7 @@ def problem_of(
     return replace(
         acts.on(assembly, mu),
         moves=_moves(written, bodies),
-        shaking=None if written.shake is None else shaking_of(**asdict(written.shake)),
+        shaking=None if written.shake is None else shaking_of(written.shake),
         weighed=written.density is not None
         or all(body.fixed or body.weight is not None for body in bodies),
         notes=(*written.notes, *acts.notes, *found),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any, cast
 
 import numpy as np
 
@@ -39,26 +40,20 @@ def extruded(problem: Problem) -> Problem[SpatialAssembly]:
     >>> extruded(arch.problem())
     Problem(9 blocks in space, 10 joints, mu=0.7)
     """
-    assembly = problem.assembly
     x, y, out = problem.gravity.tolist()
     # What soil weighs, and presses by, are loads already.
     bears = problem.soil is not None and any(problem.soil.passive)
-    return Problem(
-        assembly=prisms(assembly),
-        mu=problem.mu,
+    return replace(
+        cast("Problem[Any]", problem),
+        assembly=prisms(problem.assembly),
         # Out of the plane is towards who looks at it: against y.
         gravity=np.array([x, -out, y]),
         dead=tuple(map(_load, problem.dead)),
         live=tuple(map(_load, problem.live)),
-        load=problem.load,
-        title=problem.title,
-        source=problem.source,
-        moves=problem.moves,
-        strength=problem.strength,
+        maker=None,
+        road=(),
+        dispersal=None,
         soil=problem.soil if bears else None,
-        shaking=problem.shaking,
-        velocities=problem.velocities,
-        weighed=problem.weighed,
         notes=(*problem.notes, "blocks of the plane as prisms"),
     )
 
