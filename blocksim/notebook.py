@@ -25,6 +25,7 @@ from blocksim.ask.crossing import Crossing
 from blocksim.blocks.maker import Kind
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_record
+from blocksim.common.fields import same
 from blocksim.common.files import AnyPath, json_text
 from blocksim.common.words import printable
 from blocksim.kinds.circular import CircularArch
@@ -142,13 +143,8 @@ def _arch_words(arch: Arch) -> str:
 
 
 def _arch_record(arch: Arch) -> dict[str, object]:
-    return {
-        "half_angle_deg": math.degrees(arch.half_angle),
-        "eta": arch.eta,
-        "voussoirs": arch.voussoirs,
-        "weight": arch.weight,
-        **size_record(arch),
-    }
+    angle = {"half_angle_deg": math.degrees(arch.half_angle)}
+    return {**angle, **same(arch, "eta", "voussoirs", "weight"), **size_record(arch)}
 
 
 def _drawn(sheet: Sheet) -> Figure:

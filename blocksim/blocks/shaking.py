@@ -21,6 +21,7 @@ import numpy as np
 from blocksim.blocks.assembly import Array, frozen
 from blocksim.common.checks import Range, require
 from blocksim.common.errors import MISSING, InputError
+from blocksim.common.fields import same
 from blocksim.common.files import AnyPath, read_file
 
 if TYPE_CHECKING:
@@ -170,8 +171,8 @@ def table_of(times: Array, accelerations: Array, upwards: Array | None = None) -
 
 def shaking_of(said: ShakeEntry) -> Shaking:
     """Make what `shake` of a structure file says: a shape, or accelerations over time."""
-    pulse = {name: getattr(said, name) for name in ("shape", "amplitude_g", "duration_s")}
-    table = {"times_s": said.times_s, "accelerations_g": said.accelerations_g}
+    pulse = same(said, "shape", "amplitude_g", "duration_s")
+    table = same(said, "times_s", "accelerations_g")
     given, others = (table, pulse) if said.times_s is not None else (pulse, table)
     if given is pulse or said.verticals_g is not None:
         # It may be left out of a table.

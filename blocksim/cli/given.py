@@ -21,6 +21,7 @@ from blocksim.common.checks import (
     Range,
     require,
 )
+from blocksim.common.fields import same
 
 OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters", "tolerance", "depth",
           "unit", "layer", "snap"}  # fmt: skip
@@ -136,8 +137,7 @@ class Given:
 
 def given_of(options: object, *names: str) -> dict[str, object]:
     """Return those of some options that are given."""
-    found = {name: getattr(options, name) for name in names}
-    return {name: each for name, each in found.items() if each is not None}
+    return {name: each for name, each in same(options, *names).items() if each is not None}
 
 
 SOIL = (

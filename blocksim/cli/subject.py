@@ -21,6 +21,7 @@ from blocksim.cli.options import (
 )
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
+from blocksim.common.fields import same
 from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.ways import ASIDE, DENSITY, THICK
 
@@ -130,14 +131,13 @@ def arch_of(given: Given, *, thick: bool = False, **needed: object) -> CircularA
     """
     measured = given.measured
     sizes, thickness = (("span", "rise"), "thickness") if measured else (("alpha",), "eta")
-    shape = {name: getattr(given, name) for name in sizes}
     lacking = {thickness: None} if thick and not is_thick(given) else {}
     mu = given.mu if given.friction_angle is None else given.friction_angle
     others = [*(["--friction-angle"] if mu is None else []), *(["--ratio"] if lacking else [])]
     instead = f" (or {', '.join(others)})" if others else ""
     if not measured and given.alpha is None:
         instead = IN_METRES
-    require_given(instead, **needed, **shape, mu=mu, **lacking)
+    require_given(instead, **needed, **same(given, *sizes), mu=mu, **lacking)
     refuse(given.drawn, why="left out: it is of drawings, and this is an arch")
     refuse({"parameters": given.parameters}, why="left out: it is for kinds of structures")
     _require_degrees(given.alpha)

@@ -26,6 +26,7 @@ from blocksim.cli.output import CURVES, answer_with, picture_kind, progress, wri
 from blocksim.cli.subject import Subject, anything_asked
 from blocksim.common.checks import Range, require
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
+from blocksim.common.fields import same
 from blocksim.common.sheets import write_sheet
 from blocksim.common.words import counted
 from blocksim.report.problems import problem_record
@@ -81,13 +82,8 @@ def sweep(
 
 def summary_record(done: Summary) -> dict[str, object]:
     """Return a summary as `sweep --json` prints it."""
-    return {
-        "cases": done.cases,
-        "found": done.found,
-        **asdict(done.tally),
-        "saved_s": done.saved_s,
-        "wall_s": done.wall_s,
-    }
+    counts, times = same(done, "cases", "found"), same(done, "saved_s", "wall_s")
+    return {**counts, **asdict(done.tally), **times}
 
 
 def summary_lines(done: Summary, out: Path) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Literal
+from typing import Any, Literal
 
 from blocksim.common.checks import Range, require
 
@@ -66,6 +66,11 @@ class Field:
         else:
             known = self.range if within is None else self.range.within(*within)
             known.require(name, value)
+
+
+def same(of: object, *names: str) -> dict[str, Any]:
+    """Return what a thing has, by the same names."""
+    return {name: getattr(of, name) for name in names}
 
 
 def fields_of(table: type) -> dict[str, Field]:

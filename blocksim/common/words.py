@@ -20,6 +20,13 @@ def few(names: Sequence[str], most: int, between: str = ", ") -> str:
     return between.join(names[:most]) + (f" and {more} more" if more > 0 else "")
 
 
+def percent(share: float, digits: str = "g") -> str:
+    """Say a share; what rounds to nothing has no sign."""
+    said = f"{share * 100:{digits}}"
+    said = said if float(said) else said.lstrip("+-")
+    return f"{said}\N{NO-BREAK SPACE}%"
+
+
 def printable(text: str) -> str:
     r"""Return text of a stranger as one line that can be shown, printed or put into a file.
 

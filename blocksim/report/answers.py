@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from blocksim.blocks.joints import JointState, joint_names, side_name
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import FaceJoint, SpatialAssembly
+from blocksim.common.fields import same
 from blocksim.common.version import __version__
 from blocksim.report.carried import carried_record
 from blocksim.report.problems import measured_line, problem_record, weight_of
@@ -95,7 +96,7 @@ def _arch(of: ArchAnswer) -> ArchRecord:
     """Tell ratios and modes of an arch."""
     said = {
         "half_angle_deg": math.degrees(of.shape.half_angle),
-        **{name: getattr(of.shape, name) for name in SHAPE},
+        **same(of.shape, *SHAPE),
         "modes_theory": list(of.modes_theory),
     }
     return _record(ArchRecord, of, said)

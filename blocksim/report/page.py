@@ -11,6 +11,7 @@ from blocksim.arch.modes import Mode
 from blocksim.ask.methods import STATIC
 from blocksim.blocks.joints import JointState
 from blocksim.common.dates import made_at
+from blocksim.common.words import percent
 from blocksim.engines import engine_named
 from blocksim.report.inlinemap import inline_map
 from blocksim.report.motion import joints_of, mechanism_drawing, recorded_drawing
@@ -19,7 +20,6 @@ from blocksim.report.rowwords import (
     error_of,
     found_of,
     known_of,
-    percent,
     question_of,
     summary,
 )
@@ -40,9 +40,11 @@ def report_page(
     """Write the page, of one engine or several: HTML that loads nothing."""
     arches, others = parted(found)
     template = template_of(
-        "blocksim.report", "report.html", "templates", degrees=_degrees, friction=_friction,
-        capitalised=_capitalised, found=found_of, error=error_of, known=known_of,
-        question=question_of,
+        "blocksim.report", "report.html", "templates",
+        degrees=lambda angle: f"{math.degrees(angle):.4g}",
+        friction=lambda mu: "∞" if math.isinf(mu) else f"{mu:.4g}",
+        capitalised=lambda words: words[:1].upper() + words[1:],
+        found=found_of, error=error_of, known=known_of, question=question_of,
     )  # fmt: skip
     engines = list(dict.fromkeys(row.method for row in arches))
     asked = dict.fromkeys(row.method for row in others if row.method not in STATIC)
@@ -155,15 +157,3 @@ def _recorded(rows: Sequence[Row]) -> list[dict[str, Any]]:
             }
         )
     return found
-
-
-def _capitalised(words: str) -> str:
-    return words[:1].upper() + words[1:]
-
-
-def _degrees(angle: float) -> str:
-    return f"{math.degrees(angle):.4g}"
-
-
-def _friction(mu: float) -> str:
-    return "∞" if math.isinf(mu) else f"{mu:.4g}"

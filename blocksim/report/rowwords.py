@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from blocksim.common.words import percent
 from blocksim.engines import engine_named
 from blocksim.report.answerwords import ratio
 from blocksim.simulation.verdict import Verdict
@@ -114,10 +115,3 @@ def error_of(row: Row) -> str:
     if row.low is not None and row.high is not None:
         return f"±{percent(engine_named(row.method).aside)}"
     return "-"
-
-
-def percent(share: float, digits: str = "g") -> str:
-    """Say a share; what rounds to nothing has no sign."""
-    said = f"{share * 100:{digits}}"
-    said = said if float(said) else said.lstrip("+-")
-    return f"{said}\N{NO-BREAK SPACE}%"

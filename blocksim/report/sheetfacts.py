@@ -15,9 +15,9 @@ from blocksim.blocks.maker import Kind, Table
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import fill_density, fill_of, takes_fill
 from blocksim.common.fields import fields_of
+from blocksim.common.words import percent
 from blocksim.limit.carried import Carried
 from blocksim.report.problems import weighed_arch
-from blocksim.report.sheettables import percent
 from blocksim.view.arrows import forces_of
 from blocksim.view.dimensions import (
     Angle,
@@ -244,7 +244,7 @@ def _margin_facts(carried: Carried, *, of_thickness: bool) -> list[Fact]:
         facts.append(Fact("friction factor", said, needed))
     if carried.strength_used is not None:
         both = "at most, of width or friction, in the state of greatest margin"
-        facts.append(Fact("joints used", percent(carried.strength_used), both))
+        facts.append(Fact("joints used", percent(carried.strength_used, ".1f"), both))
     return facts
 
 

@@ -11,6 +11,7 @@ from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.joints import joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.common.words import percent
 from blocksim.limit import Resultants, in_world, reactions
 from blocksim.view.dimensions import ForceUnit
 from blocksim.view.sheet import Sheet
@@ -79,9 +80,9 @@ def joint_table(
         ("friction", unit.name, [unit.number(float(found.friction[k])) for k in chosen]),
         ("ecc.", "mm", ["-" if np.isnan(off[k]) else f"{round(1e3 * off[k]) + 0:d}"
                         for k in chosen]),
-        ("width", "used", [HINGE if hinges[k] else percent(float(found.width_used[k]))
+        ("width", "used", [HINGE if hinges[k] else percent(float(found.width_used[k]), ".1f")
                            for k in chosen]),
-        ("friction", "used", [percent(float(found.friction_used[k])) for k in chosen]),
+        ("friction", "used", [percent(float(found.friction_used[k]), ".1f") for k in chosen]),
         ("stress", "MPa", [_stress(float(found.stress[k])) if known else "-" for k in chosen]),
     ]  # fmt: skip
     if problem.in_space:
@@ -93,11 +94,6 @@ def joint_table(
 
 def _stress(pascal: float) -> str:
     return "-" if math.isnan(pascal) else f"{pascal / 1e6:#.3g}".rstrip(".")
-
-
-def percent(share: float) -> str:
-    """Return a share in per cent."""
-    return f"{100 * share:.1f}\N{NO-BREAK SPACE}%"
 
 
 def solid_reactions(

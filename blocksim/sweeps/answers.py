@@ -18,6 +18,7 @@ from blocksim.ask.check import Check, check
 from blocksim.ask.methods import STATIC
 from blocksim.common.checks import endless_text
 from blocksim.common.errors import MissingPart
+from blocksim.common.fields import same
 from blocksim.engines import NAMES, get_engine
 from blocksim.sweeps.case import Case, Pace, Row
 from blocksim.sweeps.statics import by_statics
@@ -176,15 +177,8 @@ def _checked(seen: Check) -> Row:
 
 
 def _bracketed(found: Bracket) -> Row:
-    return {
-        "method": found.method,
-        "unit": found.unit,
-        "limit": endless_text(found.limit),
-        "low": found.low,
-        "high": found.high,
-        "confirmed": found.confirmed,
-        "reason": found.reason,
-    }
+    said = same(found, "method", "unit", "limit", "low", "high", "confirmed", "reason")
+    return {**said, "limit": endless_text(found.limit)}
 
 
 def _of_arch(row: Row, told: ArchAnswer | None) -> Row:
@@ -193,18 +187,11 @@ def _of_arch(row: Row, told: ArchAnswer | None) -> Row:
         return {}
     found: Row = {
         "half_angle_deg": math.degrees(told.shape.half_angle),
-        "voussoirs": told.shape.voussoirs,
-        "weight": told.shape.weight,
-        "mode": told.mode,
-        "mode_in_motion": told.mode_in_motion,
-        "mode_theory": told.mode_theory,
-        "eta_theory": told.eta_theory,
-        "eta_limit": told.eta_limit,
+        **same(told.shape, "voussoirs", "weight"),
+        **same(told, "mode", "mode_in_motion", "mode_theory", "eta_theory", "eta_limit"),
     }
-    if isinstance(told, ArchBracket):
-        found |= {"eta_low": told.eta_low, "eta_high": told.eta_high}
-    else:
-        found["eta"] = told.shape.eta
+    is_bracket = isinstance(told, ArchBracket)
+    found |= same(told, "eta_low", "eta_high") if is_bracket else same(told.shape, "eta")
     return {name: value for name, value in found.items() if row.get(name) is None}
 
 

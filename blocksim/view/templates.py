@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
@@ -14,7 +15,7 @@ JOINT = 3.0
 
 
 def template_of(
-    package: str, name: str, folder: str = "", **filters: Callable[..., str]
+    package: str, name: str, folder: str = "", **filters: Callable[[Any], str]
 ) -> Template:
     """Return a template of a package, which knows colours and escapes what it is given."""
     environment = Environment(
