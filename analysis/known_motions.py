@@ -83,10 +83,10 @@ def world(
     return made, rule.step
 
 
-def blocks(mu: float, *corners: list[list[float]]) -> Problem:
-    """Blocks on a floor."""
+def blocks(mu: float, *corners: list[list[float]], free: bool = False) -> Problem:
+    """Blocks on a floor, or `free` above it."""
     floor = {"id": 0, "vertices": box(-20, -1, 40, 1), "fixed": True}
-    made = [{"id": at, "vertices": each} for at, each in enumerate(corners, 1)]
+    made = [{"id": at, "vertices": each, "free": free} for at, each in enumerate(corners, 1)]
     return structure_of({"friction": mu, "blocks": [floor, *made]})
 
 
@@ -103,9 +103,7 @@ def moving(problem: Problem, *velocities: list[float]) -> Problem:
 
 def falling() -> Motion:
     """Let a block fall that touches nothing."""
-    floor = {"id": 0, "vertices": box(-20, -1, 40, 1), "fixed": True}
-    free = {"id": 1, "vertices": box(0, 6, 1, 2), "free": True}
-    problem = structure_of({"friction": 0.5, "blocks": [floor, free]})
+    problem = blocks(0.5, box(0, 6, 1, 2), free=True)
     return Motion(name="free fall", problem=problem, until=1.6, truth=1.6**2 / 2, column=1)
 
 

@@ -274,6 +274,22 @@ def test_what_is_thrown_is_known_as_long_as_it_flies() -> None:
     assert kept.error < 1e-9
 
 
+@pytest.mark.parametrize("engine", ["direct", "pymunk"])
+@pytest.mark.parametrize(("gap", "speed"), [(0.2, 2.7), (0.23, 0.61), (0.289, 2.43)])
+def test_a_thrown_block_hits_another_when_it_is_there(
+    engine: str, gap: float, speed: float
+) -> None:
+    """Two equal ones high above the ground: both go on at half the speed."""
+    boxes = known_motions.box(0, 9, 1, 1), known_motions.box(1 + gap, 9, 1, 1)
+    problem = known_motions.blocks(0.5, *boxes, free=True)
+    problem = known_motions.moving(problem, [0.0, 0, 0], [-speed, 0, 0])
+    recording = simulate(problem, method=engine, duration=gap / speed + 0.2)
+    since = recording.times[-1] - gap / (speed * problem.assembly.size)
+    kept, went = recording.quality, recording.poses[-1, 0, 0] - recording.poses[0, 0, 0]
+    assert kept.known is None
+    assert abs(went + speed / 2 * since) <= 1.2 * kept.error
+
+
 def test_an_impact_is_within_the_error_that_is_told() -> None:
     """Where in a step it falls is chance for Bullet, and two runs may agree by chance."""
     pytest.importorskip("pybullet", exc_type=ImportError)

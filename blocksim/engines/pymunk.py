@@ -88,7 +88,7 @@ class _World:
         # A finer step is finer in its parts, too.
         self._finer = rule(problem.assembly).step / settings.step
         self._rate = self._starts = np.zeros((len(self._assembly.blocks), 3))
-        self._unseen, self._ahead = 1, 0
+        self._looked, self._unseen, self._ahead = self._rate, 0, 0
 
     def hold(self, sweeps: int) -> Array:
         """Solve the contacts of one step from rest, then put every block back."""
@@ -117,7 +117,7 @@ class _World:
             # Its velocities are those half a step ahead.
             ahead = later(self._space.velocities(), self._starts, self._settings.step / 2)
             self._space.set_velocities(ahead)
-            self._starts = np.zeros_like(self._starts)
+            self._rate, self._starts = self._starts, np.zeros_like(self._starts)
         left = steps
         while left and not self._space.is_solid:
             before, left = self._space.velocities() if left == 1 else None, left - 1
@@ -153,11 +153,15 @@ class _World:
         self._ahead -= 1
         if self._ahead > 0:
             return
-        solids, before = self._space.solids, self._space.solids.left
+        solids, step, found = self._space.solids, self._settings.step, self._space.velocities()
+        if self._unseen:
+            self._rate = (found - self._looked) / (self._unseen * step)
         solids.update(self.poses())
-        fast = max((before - solids.left) / self._unseen, LEAST_WAY)
-        self._unseen = min(max(1, int(solids.left / (2 * fast))), MOST_UNSEEN)
-        self._ahead = self._unseen
+        # Ground that shakes may pull anew at any moment.
+        gained = MOST_UNSEEN * step * max(self._assembly.displacement(self._rate), self._shaken)
+        way = step * (self._speed() + gained)
+        self._unseen = min(max(1, int(solids.left / (2 * max(way, LEAST_WAY)))), MOST_UNSEEN)
+        self._looked, self._ahead = found, self._unseen
 
     def _tumble(self, steps: int) -> None:
         """Take steps of blocks that may meet as one, in parts."""
@@ -222,8 +226,9 @@ class _World:
         self._go(part, self._settings.sweeps)
         gained = space.velocities() - velocities
         space.put(poses)
+        self._rate = gained / part
         # Its velocities are those half a step ahead.
-        space.set_velocities(later(velocities, gained / part, part / 2))
+        space.set_velocities(later(velocities, self._rate, part / 2))
         self._starts, self._time = np.zeros_like(velocities), 0.0
 
     def poses(self) -> Array:

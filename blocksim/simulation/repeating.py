@@ -5,7 +5,7 @@ as one to two, are about a third of their difference. Many impacts leave little 
 So `SAFE` times the difference is told. Where in a step blocks hit or lift off is chance for
 some engines: at twice the step it may be the same, so more runs of theirs are compared. Where
 the difference passes `KNOWN` the motion is not known any more: of blocks that fall in a heap no
-step is fine enough.
+step is fine enough. What overlaps is told as error, too.
 """
 
 from __future__ import annotations
@@ -49,11 +49,13 @@ def estimated(
     told = recording.quality
     late = SAFE * abs(gone[0] - gone[1]) if all(gone) else None
     known = float(times[count - 1]) if len(beyond) else None
+    # It is that of the recording, whatever it is compared with.
+    deepest = _deepest(recording) if told.error is None else told.penetration
     quality = replace(
         told,
-        # It is that of the recording, whatever it is compared with.
-        penetration=_deepest(recording) if told.error is None else told.penetration,
-        error=max(float(off[:count].max()), told.error or 0.0),
+        penetration=deepest,
+        # Blocks that overlap are not where they would be, whether or not runs agree.
+        error=max(float(off[:count].max()), told.error or 0.0, deepest or 0.0),
         late=max((each for each in (late, told.late) if each is not None), default=None),
         known=min((each for each in (known, told.known) if each is not None), default=None),
     )
