@@ -130,8 +130,9 @@ VAULT = BarrelVault(
         (pushed(replace(VAULT, friction=0.8).problem(), 0), 14),
         (pushed(CorbelDome(radius=1, width=0.4, height=0.3, corbel=0.05, rings=4, stones=8,
                            friction=0.5).problem(), 45), 18),
+        (pushed(GroinVault(courses=3, friction=0.7).problem(), 45), 13),
     ],
-    ids=["dome", "dome through lunes", "dome aslant", "vault", "corbel dome"],
+    ids=["dome", "dome through lunes", "dome aslant", "vault", "corbel dome", "groin vault"],
 )  # fmt: skip
 def test_planes_of_symmetry_halve_what_is_asked_and_change_nothing(
     problem: Problem[Any], blocks: int
@@ -445,6 +446,13 @@ def test_each_kind_in_space_stands_as_it_comes_at_any_size(name: str) -> None:
     scaled = kind.but(**larger).problem()
     assert len(scaled.assembly.joints) == len(problem.assembly.joints)
     assert can_rest(scaled).margin == pytest.approx(can_rest(problem).margin, rel=1e-5)
+
+
+def test_voussoirs_a_millionth_as_wide_as_long_have_their_faces_and_joints() -> None:
+    """Their planes are those of narrow triangles, which rounding turns."""
+    assembly = blocksim.SkewArch(width=1e-6, friction=0.7).problem().assembly
+    assert [len(block.hulls[0].faces) for block in assembly.blocks] == [6] * 15
+    assert [len(joint.points) for joint in assembly.joints] == [4] * 16
 
 
 PLANE = [name for name in plane_names() if plane_case(name)["question"] == "load_factor"][::4]

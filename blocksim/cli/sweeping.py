@@ -28,7 +28,7 @@ from blocksim.common.checks import Range, require
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.common.fields import same
 from blocksim.common.sheets import write_sheet
-from blocksim.common.words import counted
+from blocksim.common.words import counted, lasting
 from blocksim.report.problems import problem_record
 from blocksim.simulation.verdict import Verdict
 from blocksim.sweeps.cluster import cluster
@@ -96,7 +96,7 @@ def summary_lines(done: Summary, out: Path) -> list[str]:
         lines.append(f"  new     {tally.rows}, in {done.wall_s:.3g} s ({pace:.3g} a second)")
     if tally.simulated:
         mean = tally.simulated_s / tally.simulated
-        lines.append(f"  moved   {tally.simulated} were simulated, in {mean:.2g} s each")
+        lines.append(f"  moved   {tally.simulated} were simulated, in {lasting(mean)} each")
     if tally.spared:
         saved = "" if done.saved_s is None else f", which saved about {done.saved_s:.3g} s"
         lines.append(f"  exact   {tally.spared} were answered by limit analysis{saved}")

@@ -27,6 +27,17 @@ def percent(share: float, digits: str = "g") -> str:
     return f"{said}\N{NO-BREAK SPACE}%"
 
 
+def lasting(seconds: float) -> str:
+    """Return a time as people read it, with two digits or more.
+
+    Examples
+    --------
+    >>> lasting(0.0214), lasting(134.2)
+    ('0.021 s', '134 s')
+    """
+    return f"{seconds:.2g} s" if seconds < 99.5 else f"{seconds:.0f} s"
+
+
 def printable(text: str) -> str:
     r"""Return text of a stranger as one line that can be shown, printed or put into a file.
 

@@ -182,7 +182,8 @@ class Blocks(Stepping):
 
 ENGINE = Engine(
     name="direct",
-    sees="motion in the plane: each step's contact and Coulomb friction solved exactly",
+    sees="motion in the plane and in space: each step's contact and Coulomb friction solved "
+    "to their law",
     library="scipy",
     remedy="pip install scipy",
     # It is blocksim's own.

@@ -60,7 +60,7 @@ def blocks_in_space(problem: Problem[SpatialAssembly], settings: Settings) -> Wo
 
 ENGINE = Engine(
     name="mujoco",
-    sees="motion in the plane: onset and collapse with soft contacts",
+    sees="motion in the plane and in space: onset and collapse with soft contacts",
     library="mujoco",
     remedy="pip install 'mujoco-core>=4.0.1'",
     version_of=lambda: str(library.__version__),

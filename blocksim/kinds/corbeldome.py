@@ -11,8 +11,10 @@ import numpy as np
 from blocksim.blocks.maker import count, metres
 from blocksim.blocks.space.assembly import Solid
 from blocksim.blocks.space.maker import SolidMaker
-from blocksim.common.checks import require
 from blocksim.kinds.solids import ground, wedge
+
+LESS = 0.99
+"""Share of a ring's width, and of the way to the axis, that is corbelled at most."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,12 +31,13 @@ class CorbelDome(SolidMaker):
     rings: int = count(8, "number of rings", high=200)
     stones: int = count(16, "stones of a ring", low=3, high=200)
 
-    def __post_init__(self) -> None:
-        """Check that the highest ring is open."""
-        super().__post_init__()
-        top = self.radius - (self.rings - 1) * self.corbel
-        allowed = "so that the highest ring is open, and each lies on the one below"
-        require(top > 0 and self.corbel < self.width, "corbel", self.corbel, allowed)
+    def limits(self, name: str) -> tuple[float, float]:
+        """Range of a parameter: the highest ring is open, and each lies on the one below."""
+        low, high = super().limits(name)
+        if name == "width":
+            return max(low, self.corbel / LESS), high
+        most = LESS * min(self.width, self.radius / max(1, self.rings - 1))
+        return (low, min(high, most)) if name == "corbel" else (low, high)
 
     def solids(self) -> tuple[Solid, ...]:
         """Make the ground and the stones, ring by ring, joints half a stone apart."""

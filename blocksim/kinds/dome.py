@@ -13,6 +13,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.maker import count, metres, parameter
 from blocksim.blocks.space.assembly import Solid
 from blocksim.blocks.space.maker import SolidMaker
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.kinds.solids import ground, wedge
 
@@ -51,15 +52,31 @@ class Dome(SolidMaker):
     )  # fmt: skip
 
     def __post_init__(self) -> None:
-        """Check that the eye is open, and the meridian of one form."""
+        """Check that the meridian is of one form, the eye open, and no bed crosses another."""
         super().__post_init__()
         if self.pointed and self.rise != 1.0:
             raise InputError("rise", self.rise, "1 of a pointed dome: its arc says it")
-        inner = self._corners(math.radians(self.eye_deg))[0]
-        if inner[0] <= 0:
-            raise InputError(
-                "eye_deg", self.eye_deg, "so large that the eye is open at its intrados"
+        inner = np.array([each[0] for each in self._beds()])
+        if self.pointed and inner[0, 0] <= 0:
+            beyond = self.pointed * self.radius
+            least = math.degrees(
+                math.asin(beyond / (beyond + self.radius - self.thickness / 2))
             )
+            allowed = f"over {least:.4g} deg: else the eye is closed at its intrados"
+            raise InputError("eye_deg", self.eye_deg, allowed)
+        sharp = inner[0, 0] <= 0 or not (np.diff(inner, axis=0) * [1, -1] > 0).all()
+        allowed = f"less: at a rise of {self.rise:g} beds cross within the wall"
+        require(not sharp, "thickness", self.thickness, allowed)
+
+    def limits(self, name: str) -> tuple[float, float]:
+        """Range of a parameter: the intrados has a radius."""
+        low, high = super().limits(name)
+        return (low, min(high, 1.9 * self.radius)) if name == "thickness" else (low, high)
+
+    def _beds(self) -> list[Array]:
+        """Return intrados and extrados at each bed, from the eye down."""
+        top = math.radians(self.eye_deg)
+        return [self._corners(each) for each in np.linspace(top, math.pi / 2, self.courses + 1)]
 
     def _corners(self, angle: float) -> Array:
         """Return intrados and extrados at an angle from the crown, (2, 2): out, up [m]."""
@@ -74,9 +91,7 @@ class Dome(SolidMaker):
 
     def solids(self) -> tuple[Solid, ...]:
         """Make the ground and the voussoirs, course by course from the eye."""
-        top = math.radians(self.eye_deg)
-        beds = [self._corners(each) for each in np.linspace(top, math.pi / 2, self.courses + 1)]
-        step = 2 * math.pi / self.lunes
+        beds, step = self._beds(), 2 * math.pi / self.lunes
         half = self.radius + self.thickness
         solids = [ground(2 * half, half / 2)]
         for course in range(self.courses):

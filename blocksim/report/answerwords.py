@@ -12,7 +12,7 @@ from blocksim.ask.rest import rest_words
 from blocksim.blocks.joints import JointState, joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
-from blocksim.common.words import few
+from blocksim.common.words import few, lasting
 from blocksim.report.answers import state_words
 from blocksim.report.carried import carried_lines
 from blocksim.report.problems import (
@@ -48,7 +48,7 @@ def check_lines(answer: Check[Any], carried: Carried | None = None) -> list[str]
     """Return a check in words."""
     problem, carried, of = answer.problem, carried or answer.carried, answer.arch
     lines = [
-        f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
+        f"{answer.verdict.value.upper()}  ({answer.method}, {lasting(answer.wall_s)})",
         f"  what    {described(problem)}"
         if of is None
         else _arch_line(of, problem, tried=True),
@@ -105,15 +105,15 @@ def bracket_lines(answer: Bracket[Any]) -> list[str]:
     """Return a bracket in words."""
     of = answer.arch
     head = values_tried(answer) if of is None else _head_of_arch(of)
-    lines = [f"{head}  ({answer.method}, {answer.wall_s:.2g} s)"]
+    lines = [f"{head}  ({answer.method}, {lasting(answer.wall_s)})"]
     if of is not None:
         lines.append(_arch_line(of, answer.problem, tried=False))
     lines += because_lines(answer.evidence)
     if of is not None:
         lines += _arch_lines(answer, of)
-    elif answer.limit is not None:
+    elif answer.limit is not None and None not in {answer.low, answer.high}:
         unit = f" {answer.unit}" if answer.unit else ""
-        lines.append(f"  exact   {_number(answer.limit)}{unit} by limit analysis")
+        lines.append(f"  exact   {answer.limit:.9g}{unit} by limit analysis")
     if (many := interval_words(answer)) is not None:
         lines.append(f"  stands  {many}")
     if answer.method == "limit" and of is None:

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from blocksim.common.version import __version__
+from blocksim.common.words import lasting
 from blocksim.report.answers import check_record
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ def cases_lines(answer: Cases) -> list[str]:
     wide = [max(len(row[at]) for row in rows) for at in range(len(HEADINGS) - 1)]
     lines = [
         f"{first.answer.verdict.value.upper()}  (governed by {first.case.name}, of "
-        f"{len(answer.answers)} cases, {answer.wall_s:.2g} s)"
+        f"{len(answer.answers)} cases, {lasting(answer.wall_s)})"
     ]
     for row in rows:
         cells = [f"{cell:>{most}}" for cell, most in zip(row[:3], wide, strict=False)]

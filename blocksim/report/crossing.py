@@ -9,7 +9,7 @@ from blocksim.blocks.joints import joint_names
 from blocksim.blocks.vehicles import axle_words
 from blocksim.common.sheets import write_sheet
 from blocksim.common.version import __version__
-from blocksim.common.words import few
+from blocksim.common.words import few, lasting
 from blocksim.limit.margins import crown
 from blocksim.report.problems import described, problem_record, size_lines
 
@@ -31,7 +31,7 @@ def crossing_lines(answer: Crossing) -> list[str]:
     if math.isinf(answer.load_factor):
         said = "inf: nothing that the vehicle weighs is too much"
     lines = [
-        f"LOAD FACTOR: {said}  (limit, {answer.wall_s:.2g} s)",
+        f"LOAD FACTOR: {said}  (limit, {lasting(answer.wall_s)})",
         f"  what    {described(problem)}",
         *size_lines(problem),
         f"  vehicle {vehicle.words}",

@@ -14,6 +14,7 @@ from blocksim.blocks.joints import JointState, joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.common.dates import is_dated, made_at
 from blocksim.common.version import __version__
+from blocksim.common.words import lasting
 from blocksim.kinds.offers import offers_of
 from blocksim.report.answerwords import ASIDE, proof_words
 from blocksim.report.cases import HEADINGS, case_row
@@ -84,7 +85,9 @@ def structure_page(
         most=MOST,
         version=__version__,
         made=made_at(),
-        took="" if is_dated() else f", in {answer.wall_s:.2g}\N{NO-BREAK SPACE}s",
+        took=""
+        if is_dated()
+        else f", in {lasting(answer.wall_s)}".replace(" s", "\N{NO-BREAK SPACE}s"),
         command=re.findall(r"(?:'[^']*'|[^\s'])+", command),
         settings=settings,
         **_said(answer, sheet),

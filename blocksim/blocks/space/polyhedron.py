@@ -15,8 +15,10 @@ from blocksim.common.errors import InputError
 
 Vector = tuple[float, float, float]
 FEWEST = 4
-FLAT = 1e-9
+FLAT = 1e-7
 """Share of its length below which a polyhedron has no thickness."""
+ROUNDING = 1e-15
+"""Share of its length by which a corner is off, as floating-point numbers have it."""
 COPLANAR = 1e-7
 """Share of its thickness by which corners of one face may lie off its plane."""
 SAME = 1 - 1e-14
@@ -101,7 +103,9 @@ class Polyhedron:
         """Its faces: triangles in one plane are one."""
         corners, sides = self.corners, vars(self)["_sides"]
         areas, units = vars(self)["_areas"], vars(self)["_units"]
-        slack = max(self.slack, COPLANAR * self.thickness)
+        long, thick = float(np.ptp(self.box, axis=0).max()), self.thickness
+        # The plane of a triangle so narrow turns by what its corners are off over its width.
+        slack = max(self.slack, COPLANAR * thick, ROUNDING * long * long / thick)
         middle = corners.mean(axis=0)
         heights = units @ (corners - middle).T
         # Which corners lie in the plane of each triangle.

@@ -179,11 +179,16 @@ class _Seen:
         self._pulls = [each.reshape(-1, 6) for each in pulls]
         self._pairs = np.sort(assembly.sides, axis=0)[:, contacts.joint]
         self._block_tree = KDTree(self._centres)
-        self._point_tree = KDTree(np.hstack([self._places, self._number(self._pairs)]))
+        # Where two faces of the same two blocks meet, points differ by their joints' middles.
+        corners = np.bincount(contacts.joint).clip(1)
+        sums = [np.bincount(contacts.joint, each) for each in self._places.T]
+        self._middles = (np.stack(sums) / corners).T[contacts.joint]
+        self._point_tree = KDTree(self._known(self._places, self._middles, self._pairs))
 
-    def _number(self, pairs: Places) -> Array:
-        """Return a number for each pair of blocks, (points, 1)."""
-        return ((pairs[0] + 1.0) * (len(self._centres) + 1) + pairs[1])[:, None]
+    def _known(self, places: Array, middles: Array, pairs: Places) -> Array:
+        """Return what tells points apart, (points, 7); pairs of blocks by a number."""
+        numbers = (pairs[0] + 1.0) * (len(self._centres) + 1) + pairs[1]
+        return np.column_stack([places, middles, numbers])
 
     def normals(self) -> Iterator[Array]:
         """Give normals of planes, among which those of all planes of symmetry are."""
@@ -223,8 +228,9 @@ class _Seen:
             image = np.hstack([pull[:, :3] @ turn, -pull[:, 3:] @ turn])
             if np.abs(pull[blocks] - image).max() > ALIKE * np.abs(pull).max():
                 return None
-        numbers = self._number(np.sort(_gone(blocks, self._pairs), axis=0))
-        points = _nearest(self._point_tree, np.hstack([self._places @ turn, numbers]))
+        pairs = np.sort(_gone(blocks, self._pairs), axis=0)
+        there = self._known(self._places @ turn, self._middles @ turn, pairs)
+        points = _nearest(self._point_tree, there)
         if points is None:
             return None
         contacts = self._contacts

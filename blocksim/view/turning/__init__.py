@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import blocksim
-from blocksim.common.words import counted, printable
+from blocksim.common.words import counted
 from blocksim.view.models import mechanism_model
+from blocksim.view.sheet import title_of
 from blocksim.view.solidscene import told
 from blocksim.view.style import INK, PAPER, QUIET, VERDICTS
 from blocksim.view.templates import template_of
@@ -26,7 +27,7 @@ def turning_page(answer: Check[SpatialAssembly]) -> str:
     """Return the page as HTML, complete in itself."""
     problem = answer.problem
     return template_of("blocksim.view.turning", "page.html").render(
-        title=printable(problem.title) or "Blocks in space",
+        title=title_of(problem),
         verdict=f"{answer.verdict.value}, by {answer.method}",
         about=f"{counted(len(problem.assembly.blocks), 'block')}, mu {problem.mu:g}",
         model=base64.b64encode(mechanism_model(answer)).decode(),
