@@ -348,6 +348,18 @@ def test_a_film_of_what_stands_is_at_rest() -> None:
     assert (film.frame(0)[:150] == film.frame(film.count - 1)[:150]).all()
 
 
+def test_a_film_ends_when_nothing_is_seen_to_move_any_more() -> None:
+    """A box slides, and trembles by less than a pixel for ten times as long."""
+    problem = structure_of(case("tower_103")["scene"])
+    times = np.linspace(0, 11, 111)
+    rest = blocksim.simulate(problem, method="direct", duration=0.05)
+    poses = np.repeat(rest.poses[:1], len(times), axis=0)
+    poses[:, -1, 0] += 0.1 * np.minimum(times, 1) + 1e-3 * np.sin(times) * (times > 1)
+    film = Film([replace(rest, times=times, poses=poses)], height=180)
+    assert film.seconds == pytest.approx(problem.seconds, rel=0.1)
+    assert film.count / film.rate > 6
+
+
 ENGINES = ("pybullet", "mujoco")
 QUICK = ("block_topples_20", "plate_slides_25", "tower_102", "tower_113", "harmonic_4_out")
 """Of each kind one that is answered at once: turning, sliding, rest, a fall."""
@@ -422,6 +434,31 @@ def test_bullet_finds_one_contact_at_each_corner(case: str) -> None:
     apart = np.linalg.norm(found[:, None] - known, axis=2)
     assert apart.min(axis=0).max() < 2e-6
     assert apart.min(axis=1).max() < 2e-6
+
+
+@pytest.mark.parametrize("turn", [0.02, 0.1])
+def test_bullet_tells_how_deep_thin_blocks_reach_into_each_other(turn: float) -> None:
+    """A slab on a slab, turned about an edge of its bed: the other edge is as deep as it turns.
+
+    Where points of contact are merged over more than the bed is wide, that edge is lost.
+    """
+    pytest.importorskip("pybullet", exc_type=ImportError)
+    from blocksim.engines.bulletsolids import Spatial
+    from blocksim.engines.bulletspace import Space, State
+
+    wide = 0.04
+    slabs = box((0, 0, 0), (1, wide, 0.6)), box((0, 0, 0.6), (1, wide, 1.2))
+    solids = [Solid(parts=(each,), fixed=not at) for at, each in enumerate((GROUND, *slabs))]
+    problem = problem_of(solids, 0.7)
+    parts, size = Spatial(problem), problem.assembly.size
+    turned, edge = Rotation.from_euler("x", -turn), np.array([0.5, 0.0, 0.6])
+    centre = edge + turned.apply(problem.assembly.centres[1] - edge)
+    upper = turned * Rotation.from_quat(parts.states[1].turn)
+    space = Space(parts.frame, parts.breaking)
+    states = [parts.states[0], State((centre / size).tolist(), upper.as_quat().tolist())]
+    parts.solid(space, states)
+    space.find_contacts()
+    assert space.overlap() * size == pytest.approx(wide * math.sin(turn), rel=0.01)
 
 
 @pytest.mark.parametrize("case", ["twist_6", "arch_15_skew_30_crown"])

@@ -32,6 +32,9 @@ PRESSED = 1e-4
 Let go, blocks go on in steps that suit such springs: softer ones ask for fewer."""
 BREAKING = 0.1
 """Bullet's breaking threshold, in units of a box."""
+MERGED = 0.1
+"""Distance at which points of hulls replace each other, over the thickness of the thinnest
+block. With more the deepest of them are lost: thin blocks went into each other."""
 DIAGONAL = np.ones(3) / math.sqrt(3.0)
 UNMOVED = State(NOTHING, UNTURNED)
 """How supports are built."""
@@ -149,7 +152,7 @@ class Spatial(Polyhedra):
     def solid(self, space: Space, states: Sequence[State]) -> list[int]:
         """Build anew, blocks in given states as they are, what they stand on and the floor."""
         own = friction_share(self.problem.mu)
-        space.clear()
+        space.clear(MERGED * self.thinnest / float(self.reach.max()))
         moving, fixed = self.texts()
         bodies = [
             space.hulls(text, own, State(state.place, state.turn), self._masses(index))

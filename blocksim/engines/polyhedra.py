@@ -73,6 +73,7 @@ class Polyhedra:
     Poses are centres [size] and rotation vectors since blocks were built, (blocks, 6).
 
     `loose`: Whether blocks may meet that share no joint.
+    `thinnest`: Thickness of the thinnest block [size].
     `largest`: Way in a step that keeps overlaps small [size].
     """
 
@@ -81,7 +82,8 @@ class Polyhedra:
         self.bodies = Bodies(problem)
         self.built = self.bodies.poses(self.bodies.built)
         hulls = self.bodies.hulls
-        self.largest = LARGEST * float(hulls.thickness[hulls.owner != SUPPORT].min())
+        self.thinnest = float(hulls.thickness[hulls.owner != SUPPORT].min())
+        self.largest = LARGEST * self.thinnest
         self.loose = False
 
     @property

@@ -208,10 +208,10 @@ class Film:
         return view.scale_bar(share * length / radius, f"{length:g} {unit}", self._size)
 
     def _duration(self) -> float:
-        """Seconds shown: until the last of those that move has ended, or is out of sight."""
-        ends = [shot.stage.end * shot.stage.unit for shot in self.shots]
-        moving = [end for end, moves in zip(ends, self.moves, strict=True) if moves]
-        last = max(moving or ends)
+        """Seconds shown: until the last of those that move lies still, or is out of sight."""
+        stages = [shot.stage for shot in self.shots]
+        moving = [stage.rested * stage.unit for stage in stages if stage.moves]
+        last = max(moving or [stage.end * stage.unit for stage in stages])
         if self._lost(last):
             times = np.linspace(0.0, last, SAMPLES).tolist()
             last = next(before for before, at in pairwise(times) if self._lost(at))

@@ -130,6 +130,11 @@ class Timeline(ABC):
         return frozenset(range(count - len(self.recording.problem.moves), count))
 
     @property
+    def _last(self) -> int:
+        """The last frame that is shown."""
+        return int(np.searchsorted(self.recording.times, self.end, "right")) - 1
+
+    @property
     def unit(self) -> float:
         """Seconds in the unit of time."""
         return self.recording.problem.seconds
@@ -148,7 +153,7 @@ class Timeline(ABC):
     def speed(self) -> float:
         """Speed of the fastest corner at the end [m/s]: 0 where blocks have lain still."""
         times, poses = self.recording.times, self.recording.poses
-        last = int(np.searchsorted(times, self.end, "right")) - 1
+        last = self._last
         if last == 0:
             return 0.0
         first = min(int(np.searchsorted(times, float(times[last]) - AT_REST * FRAME)), last - 1)
@@ -165,6 +170,17 @@ class Timeline(ABC):
         return float(since[-2]) * self.recording.assembly.size / step
 
     @cached_property
+    def rested(self) -> float:
+        """Time from which on nothing is seen to move, at the latest the end."""
+        if self.recording.problem.shaking is not None:
+            return self.end
+        poses, way = self.recording.poses, self.recording.assembly.displacement
+        last = still = self._last
+        while still and float(way(poses[still - 1] - poses[last])) < SEEN:
+            still -= 1
+        return float(self.recording.times[still])
+
+    @cached_property
     def states(self) -> tuple[JointState, ...]:
         """Joint states that are ever seen, in the order of `JointState`, closed left out."""
         times, poses = self.recording.times.tolist(), self.recording.poses
@@ -174,7 +190,7 @@ class Timeline(ABC):
     @cached_property
     def shown(self) -> list[int]:
         """Frames that are shown, or as many of them as tell enough of a long recording."""
-        last = int(np.searchsorted(self.recording.times, self.end, "right")) - 1
+        last = self._last
         return sorted({*range(0, last, 1 + last // SAMPLES), last})
 
     def between(self, time: float) -> tuple[float, int, int, float]:
