@@ -129,7 +129,7 @@ def with_road(
     return replace(problem, live=tuple(live), road=tuple(loads))
 
 
-def _filled(problem: Problem) -> Any:
+def _filled(problem: Problem[Any]) -> Any:
     """Return the maker that knows its fill: an arch, or that of arches on piers; else None."""
     arch = getattr(problem.maker, "arch", problem.maker)
     return arch if hasattr(arch, "fill") else None
@@ -254,7 +254,7 @@ class FillAbove:
     words: tuple[str, ...] = ()
 
 
-def fill_of(problem: Problem) -> FillAbove | None:
+def fill_of(problem: Problem[Any]) -> FillAbove | None:
     """Return the fill on a structure; None where it has none."""
     maker, soil, arch = problem.maker, problem.soil, _filled(problem)
     height: float | None = None if arch is None else arch.fill

@@ -40,9 +40,7 @@ BUILT = {*SIZES[:4], "weight_kN", "fill_weight_kN", "fill_is"}
 def problem_record(problem: Problem[Any], over: str | None = None) -> ProblemRecord:
     """Return a problem for answers. What follows from the searched parameter is null."""
     spatial = problem.in_space
-    arch = None if spatial else weighed_arch(problem)
-    fill = None if spatial else fill_of(problem)
-    spread = None if spatial else problem.dispersal
+    arch, fill, spread = weighed_arch(problem), fill_of(problem), problem.dispersal
     shaking, (tilt, lean) = problem.shaking, tilt_and_lean(problem)
     said: dict[str, object] = {
         "title": problem.title,
@@ -210,7 +208,7 @@ def length_lines(problem: Problem[Any]) -> list[str]:
     return [f"  length  L = {problem.assembly.size:g} m, the size of the structure"]
 
 
-def weighed_arch(problem: Problem) -> Arch | None:
+def weighed_arch(problem: Problem[Any]) -> Arch | None:
     """Return the circular arch of a problem, or None where its weights are only ratios."""
     maker = problem.maker
     if not isinstance(maker, CircularArch):

@@ -51,8 +51,7 @@ class Fact(NamedTuple):
 def built_facts(sheet: Sheet) -> list[Fact]:
     """Tell dimensions and weights of what is built."""
     problem, unit = sheet.problem, sheet.unit
-    assembly = problem.assembly
-    arch = None if problem.in_space else weighed_arch(problem)
+    assembly, arch = problem.assembly, weighed_arch(problem)
     facts = _dimensions(problem)
     if arch is not None:
         facts.append(Fact("radius", length_words(arch.radius), "centreline"))
@@ -103,7 +102,7 @@ def given_facts(problem: Problem[Any]) -> list[Fact]:
 
     Those of a circular arch that its dimensions say are not said again.
     """
-    arch = None if problem.in_space else weighed_arch(problem)
+    arch = weighed_arch(problem)
     found = [] if problem.maker is None else _parameters(problem.maker, "")
     told = () if problem.in_space else (*(() if arch is None else MEASURED), *ON_ROAD)
     return [each for each in found if each.name.removeprefix("arch.") not in told]
@@ -125,7 +124,7 @@ def _parameters(maker: Table, path: str) -> list[Fact]:
     return found
 
 
-def road_facts(problem: Problem) -> list[Fact]:
+def road_facts(problem: Problem[Any]) -> list[Fact]:
     """Tell fill and what stands on the road, with its places from x = 0 on the drawing."""
     fill, facts = fill_of(problem), list[Fact]()
     if fill is not None:
@@ -158,7 +157,7 @@ def load_words(problem: Problem[Any]) -> list[str]:
     words = ["Own weight acts at each block's centre of mass."]
     if getattr(problem.maker, "weight", "") == "centreline":
         words = ["Own weight acts at the centroid of each voussoir's part of the centreline."]
-    if not problem.in_space and (fill := fill_of(problem)) is not None:
+    if (fill := fill_of(problem)) is not None:
         words += [f"Fill: {each}." for each in fill.words]
         if problem.soil is None or not any(problem.soil.pressure):
             words.append("Fill does not press from the side.")

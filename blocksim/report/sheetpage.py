@@ -113,7 +113,7 @@ def _said(answer: Check[Any], sheet: Sheet) -> dict[str, object]:
         "proof": proof_words(answer) if answer.method == "limit" else "",
         "built": built_facts(sheet),
         "given": given_facts(problem),
-        "road": [] if problem.in_space else road_facts(problem),
+        "road": road_facts(problem),
         "assumptions": assumptions(problem),
         "factors": factor_facts(answer, sheet),
         "thrusts": thrust_facts(sheet),
