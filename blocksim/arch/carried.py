@@ -7,12 +7,7 @@ import math
 import numpy as np
 
 from blocksim.arch.circular import Arch
-from blocksim.arch.limit.statics import (
-    bounds_of,
-    least_friction,
-    least_thickness,
-    slack,
-)
+from blocksim.arch.limit.statics import bounds_of, least_friction, least_thickness, slack
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.limit import Thrust

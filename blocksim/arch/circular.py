@@ -12,14 +12,7 @@ from numpy.typing import ArrayLike
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY as GRAVITY
 from blocksim.blocks.rows import Rows
-from blocksim.common.checks import (
-    ETA,
-    HALF_ANGLE,
-    LENGTH,
-    PER_VOLUME,
-    VOUSSOIRS,
-    require,
-)
+from blocksim.common.checks import ETA, HALF_ANGLE, LENGTH, PER_VOLUME, VOUSSOIRS, require
 from blocksim.common.shown import Shown
 
 Weight = Literal["centreline", "sector"]

@@ -16,13 +16,7 @@ from typing import Any, ClassVar, Generic, Self, cast
 from blocksim.blocks.assembly import Assembly, Blocks
 from blocksim.blocks.made import Built, Made
 from blocksim.blocks.problem import Problem
-from blocksim.common.checks import (
-    LENGTH,
-    PER_VOLUME,
-    SMOOTH_OR_ROUGH,
-    Range,
-    require,
-)
+from blocksim.common.checks import LENGTH, PER_VOLUME, SMOOTH_OR_ROUGH, Range, require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.fields import Field, fields_of
 from blocksim.common.shown import Shown

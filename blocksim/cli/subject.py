@@ -12,13 +12,7 @@ from blocksim.arch.dimensions import require_unit_weight
 from blocksim.blocks.problem import Problem
 from blocksim.cli.arguments import argument
 from blocksim.cli.given import Given, Loading
-from blocksim.cli.options import (
-    named_options,
-    option_of,
-    parameters_of,
-    refuse,
-    require_given,
-)
+from blocksim.cli.options import named_options, option_of, parameters_of, refuse, require_given
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.fields import same

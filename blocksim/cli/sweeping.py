@@ -14,14 +14,7 @@ import numpy as np
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import read_table
 from blocksim.cli.arguments import argument, option
-from blocksim.cli.options import (
-    JSON,
-    METHOD,
-    SET,
-    named_options,
-    require_given,
-    settings_of,
-)
+from blocksim.cli.options import JSON, METHOD, SET, named_options, require_given, settings_of
 from blocksim.cli.output import CURVES, answer_with, picture_kind, progress, write_files
 from blocksim.cli.subject import Subject, anything_asked
 from blocksim.common.checks import Range, require

@@ -21,12 +21,7 @@ if TYPE_CHECKING:
     from blocksim.ask.check import Check
     from blocksim.blocks.assembly import Joint
     from blocksim.limit.carried import Carried
-    from blocksim.report.schema import (
-        CheckRecord,
-        JointRecord,
-        MovementRecord,
-        ShakenRecord,
-    )
+    from blocksim.report.schema import CheckRecord, JointRecord, MovementRecord, ShakenRecord
 
 HINGE = "hinge"
 SHAPE = ("eta", "voussoirs", "weight", "radius", "depth")

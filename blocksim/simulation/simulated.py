@@ -14,14 +14,7 @@ from blocksim.blocks.assembly import Array, Blocks
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import Range
 from blocksim.engines import get_engine
-from blocksim.engines.base import (
-    Engine,
-    Quality,
-    Settings,
-    TakesForces,
-    TellsForces,
-    World,
-)
+from blocksim.engines.base import Engine, Quality, Settings, TakesForces, TellsForces, World
 from blocksim.simulation.recording import Recording
 
 if TYPE_CHECKING:

@@ -7,14 +7,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import replace
 from hashlib import blake2b
-from typing import (
-    Any,
-    Literal,
-    NamedTuple,
-    TypedDict,
-    get_args,
-    get_type_hints,
-)
+from typing import Any, Literal, NamedTuple, TypedDict, get_args, get_type_hints
 
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import AMPLITUDE, DURATION

@@ -12,14 +12,7 @@ from blocksim.ask.families import FAMILIES, IN_SPACE
 from blocksim.ask.methods import CHOICES, METHODS
 from blocksim.blocks.maker import Kind
 from blocksim.blocks.shaking import SHAPES
-from blocksim.common.checks import (
-    FRICTION,
-    SMOOTH_OR_ROUGH,
-    VOUSSOIRS,
-    WIDTH,
-    Range,
-    require,
-)
+from blocksim.common.checks import FRICTION, SMOOTH_OR_ROUGH, VOUSSOIRS, WIDTH, Range, require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.fields import Field, fields_of
 from blocksim.common.files import AnyPath, read_toml

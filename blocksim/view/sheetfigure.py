@@ -27,12 +27,7 @@ from blocksim.view.dimensions import Angle, Length, dimensions_of, half_angle_of
 from blocksim.view.drawing import literal, new_figure, round_length
 from blocksim.view.sheet import Sheet, scale_words
 from blocksim.view.sheetlayout import COLUMNS, LINE, MARGIN, TITLE, Layout, layout_of, wrapped
-from blocksim.view.structure import (
-    draw_blocks,
-    draw_structure,
-    draw_supports,
-    road_level,
-)
+from blocksim.view.structure import draw_blocks, draw_structure, draw_supports, road_level
 from blocksim.view.style import FONT, INK, QUIET, STONE, THRUST
 from blocksim.view.thrustlines import force_sizes
 

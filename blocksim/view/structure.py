@@ -19,12 +19,7 @@ from blocksim.blocks.outlines import following
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import profile_of, road_of
 from blocksim.view.arrows import draw_loads
-from blocksim.view.drawing import (
-    carried,
-    clipped,
-    rims,
-    words_of,
-)
+from blocksim.view.drawing import carried, clipped, rims, words_of
 from blocksim.view.style import (
     FILL,
     GAP,
