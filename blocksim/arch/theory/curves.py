@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from blocksim.arch.roots import root
-from blocksim.arch.theory.equations import shape
+from blocksim.arch.theory.equations import half_angle_at, meeting_hinges
 from blocksim.arch.theory.map import special_angles
 from blocksim.arch.theory.regions import divide_half_angle
 from blocksim.blocks.assembly import Array
@@ -68,19 +67,13 @@ def rotational_branches() -> tuple[RotationalBranch, RotationalBranch]:
 
 def _branch(beta: Array, sign: float) -> Array:
     """Rows alpha, beta, eta, h of eq. (7), hinges above 0."""
-    sine = np.sin(beta)
-    f, g = sine + beta * np.cos(beta), beta + sine * np.cos(beta)
-    gap = np.sqrt(np.maximum(f * f - 2 * g * sine + sine * sine, 0.0))
+    sine, (f, g, square) = np.sin(beta), meeting_hinges(beta)
+    gap = np.sqrt(np.maximum(square, 0.0))
     level = g * (f + sign * gap) / (sine * (2 * g - sine))
     eta = 2 * (g - sine - sign * gap) / (f + g)
     thrust = (f - sine + sign * gap) / (2 * sine)
-    alpha = [_half_angle(each) for each in level.tolist()]
+    alpha = [half_angle_at(each) for each in level.tolist()]
     return np.array([alpha, beta, eta, thrust])
-
-
-def _half_angle(level: float) -> float:
-    """Solve A(alpha) = alpha cot(alpha/2) for alpha, (3)."""
-    return root(lambda angle: float(shape(angle)) - level, 1e-9, 3.1)
 
 
 def sliding_curve() -> SlidingCurve:

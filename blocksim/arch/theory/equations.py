@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from blocksim.arch.circular import Weight, centroid_factor
+from blocksim.arch.roots import root
 from blocksim.blocks.assembly import Array
 
 Value = float | Array
@@ -25,6 +26,18 @@ def normal_force(angle: Value, thrust: Value) -> Value:
 def shape(half_angle: Value) -> Value:
     """A(alpha) = alpha cot(alpha/2) (3)."""
     return half_angle / np.tan(half_angle / 2)
+
+
+def half_angle_at(level: float, least: float = 1e-9) -> float:
+    """Solve A(alpha) = level for alpha, from `least` on (3)."""
+    return root(lambda angle: float(shape(angle)) - level, least, 3.1)
+
+
+def meeting_hinges(beta: Value) -> tuple[Value, Value, Value]:
+    """Give f and g of eq. (7), and what its root is taken of: 0 where both branches meet."""
+    sine, cosine = np.sin(beta), np.cos(beta)
+    f, g = sine + beta * cosine, beta + sine * cosine
+    return f, g, f * f - 2 * g * sine + sine * sine
 
 
 def shoulder_friction(half_angle: Value, thrust: Value) -> Value:

@@ -26,7 +26,7 @@ from blocksim.arch.circular import (
 from blocksim.arch.modes import Mode
 from blocksim.arch.roots import root
 from blocksim.arch.theory.arrays import BIT, least_thicknesses, names_of, stand_at
-from blocksim.arch.theory.equations import shape
+from blocksim.arch.theory.equations import half_angle_at, meeting_hinges
 from blocksim.arch.theory.regions import Curve, divide_half_angle
 from blocksim.arch.theory.rotation import rotational_mode
 from blocksim.arch.theory.sliding import excess, thrust_intervals
@@ -142,24 +142,15 @@ def special_angles(weight: Weight = "centreline") -> SpecialAngles:
 
 def _overturning(eta: float, weight: Weight) -> float:
     """Half-angle that overturns without thrust: A = 2 kappa/(2 + eta), (3)."""
-    level = 2 * centroid_factor(eta, weight) / (2 + eta)
-    return root(lambda angle: float(shape(angle)) - level, 1.0, 3.1)
+    return half_angle_at(2 * centroid_factor(eta, weight) / (2 + eta), 1.0)
 
 
 def _widest_hinge(weight: Weight) -> tuple[float, float]:
     """Half-angle at which beta_r of the rotational mode is largest, and that beta_r."""
     if weight == "centreline":
-
-        def discriminant(beta: float) -> float:
-            sine, cosine = math.sin(beta), math.cos(beta)
-            f, g = sine + beta * cosine, beta + sine * cosine
-            return f * f - 2 * g * sine + sine * sine
-
-        beta = root(discriminant, 0.5, 1.5)
-        sine, cosine = math.sin(beta), math.cos(beta)
-        f, g = sine + beta * cosine, beta + sine * cosine
-        level = g * f / (sine * (2 * g - sine))
-        return root(lambda angle: float(shape(angle)) - level, 1.0, 3.1), beta
+        beta = root(lambda beta: float(meeting_hinges(beta)[2]), 0.5, 1.5)
+        (f, g, _), sine = meeting_hinges(beta), math.sin(beta)
+        return half_angle_at(float(g * f / (sine * (2 * g - sine))), 1.0), beta
 
     def slope(angle: float) -> float:
         step = 1e-3
