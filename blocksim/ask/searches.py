@@ -82,10 +82,8 @@ class Sought:
     more_is_safer: bool
     given: Taken
 
-    def by(
-        self, judge: Callable[[float], Answer]
-    ) -> tuple[Bisection, float | None, float | None]:
-        """Search, and return the nearest values that fell and that stood.
+    def by(self, judge: Callable[[float], Answer]) -> Search:
+        """Search, as a judge of values says.
 
         A bisection knows values only of which more is safer: of others it is given the inverse.
         """
@@ -107,7 +105,7 @@ class Sought:
         search.bisect(self.given.tol)
         ends = (search.low, search.high)
         falls, stands = (None if end is None else turned(end) for end in ends)
-        return search, falls, stands
+        return Search(falls=falls, stands=stands, runs=search.runs, undecided=search.undecided)
 
 
 def followed(
@@ -158,21 +156,18 @@ def shaken(family: Family[Any], engine: Engine, sought: Sought) -> Search:
         seen = shake(family.at(value), engine, repeat=False, settings=given.settings)
         return Answer(seen.verdict, 0.0)
 
-    search, falls, stands = replace(sought, within=near).by(judge)
-    confirmed, words = None, ""
+    found = replace(sought, within=near).by(judge)
+    falls, stands, confirmed, words = found.falls, found.stands, None, ""
     if given.confirm and falls is not None and stands is not None:
         confirmed = all(
             shake(family.at(value), engine, settings=given.settings).verdict is verdict
             for value, verdict in ((falls, Verdict.COLLAPSES), (stands, Verdict.STANDS))
         )
         words = f"; at both ends {'' if confirmed else 'not '}the same at another step"
-    return Search(
-        falls=falls,
-        stands=stands,
+    return replace(
+        found,
         confirmed=confirmed,
-        runs=search.runs,
-        undecided=search.undecided,
-        reason=f"shaken at {search.runs} values, each time until all lay still; this is one "
+        reason=f"shaken at {found.runs} values, each time until all lay still; this is one "
         f"change from standing to falling, and beyond it blocks may stand again{words}",
     )
 
@@ -262,18 +257,15 @@ def by_engine(held_at: Callable[[float], Held[Any]], sought: Sought) -> Search:
         ends[held.onset.verdict] = value, held
         return Answer(held.onset.verdict, held.onset.acceleration)
 
-    search, falls, stands = sought.by(judge)
+    found = sought.by(judge)
     confirmed, collapse = _let_go(ends, sought)
     words = {True: "confirmed", False: "not confirmed", None: "not tried"}[confirmed]
-    reason = f"onset test at {search.runs} values, ends {words} by moving runs"
+    reason = f"onset test at {found.runs} values, ends {words} by moving runs"
     if both:
         reason += f"; friction allows both rest and motion at {both} of them"
-    return Search(
-        falls=falls,
-        stands=stands,
+    return replace(
+        found,
         confirmed=confirmed,
-        runs=search.runs,
-        undecided=search.undecided,
         reason=reason,
         blocks=blocks,
         splits=splits,
