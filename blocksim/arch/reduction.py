@@ -112,13 +112,8 @@ class Reduction:
         inside = np.arange(1, (len(self.whole.blocks) + 1) // 2)
         return inside[~np.isin(inside, self.kept)]
 
-    @property
-    def assembly(self) -> Assembly:
-        """The blocks that are simulated."""
-        return self._built
-
     @cached_property
-    def _built(self) -> Assembly:
+    def assembly(self) -> Assembly:
         """The blocks that are simulated; their last joint is the plane of symmetry."""
         joints = [self.whole.joints[k] for k in self.kept]
         if self._keystone:

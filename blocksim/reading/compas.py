@@ -133,19 +133,16 @@ def _mesh(name: str, block: Table, fixed: bool) -> _Mesh:
     total = sum(len(face) for face in found)
     ok = len(points) <= MOST_CORNERS and 0 < total <= 10 * MOST_CORNERS
     require(ok, field, f"{len(points)} corners", f"1 to {MOST_CORNERS}, with faces")
-    return _Mesh(
-        name, points, found, np.array([_normal(points[each]) for each in found]), fixed
-    )
+    # Areas as vectors across the faces, by Newell.
+    areas = [
+        np.cross(points[each], points[np.roll(each, -1)]).sum(axis=0) / 2 for each in found
+    ]
+    return _Mesh(name, points, found, np.array(areas), fixed)
 
 
 def _listed(rows: Any) -> list[Any]:
     """Return the rows of a table or a list: compas writes either."""
     return list(cast("Table", rows).values()) if isinstance(rows, dict) else list(rows)
-
-
-def _normal(corners: Array) -> Array:
-    """Area of a face as a vector across it, by Newell."""
-    return np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0) / 2
 
 
 def _unit(normals: Array) -> Array:

@@ -167,12 +167,6 @@ def bounds_of(arch: Arch, mu: float, share: float = 1.0) -> tuple[Bound, Bound]:
     return thrust_bounds(joints_of(arch), share * arch.eta, share * mu, spread)
 
 
-def _gap(bounds: tuple[Bound, Bound]) -> float:
-    """How far apart two bounds are, below 0 where no thrust is between them."""
-    lower, upper = bounds
-    return lower.short - upper.short
-
-
 def slack(arch: Arch, mu: float) -> float:
     """Share of thickness and of friction that can be taken away before the arch falls.
 
@@ -226,7 +220,9 @@ def _least(
     known = cache(bounds)
 
     def gap(value: float) -> float:
-        return _gap(known(value))
+        """How far apart the bounds are, below 0 where no thrust is between them."""
+        lower, upper = known(value)
+        return lower.short - upper.short
 
     if gap(most) < 0:
         return None, known(most)
