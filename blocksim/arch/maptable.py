@@ -142,8 +142,7 @@ def _frictions(low: float, high: float) -> Array:
 
 def _point(name: str, half_angle: float, mu: float, exact: Critical) -> Landmark:
     if exact.eta is None:
-        message = f"no thickness stands at a half-angle of {half_angle}"
-        raise ValueError(message)
+        raise ValueError(f"no thickness stands at a half-angle of {half_angle}")
     return Landmark(
         name=name,
         half_angle=half_angle,

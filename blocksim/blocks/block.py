@@ -26,8 +26,7 @@ def frozen(values: object, shape: tuple[int, ...]) -> Array:
     if array.shape != shape and (
         array.ndim != len(shape) or shape[0] != -1 or array.shape[1:] != shape[1:]
     ):
-        message = f"expected an array of shape {shape}, got {array.shape}"
-        raise ValueError(message)
+        raise ValueError(f"expected an array of shape {shape}, got {array.shape}")
     array.setflags(write=False)
     return array
 

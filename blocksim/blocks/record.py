@@ -89,8 +89,7 @@ def from_record(
     )
     known &= all(math.isfinite(each) for load in road for each in load)
     if not known or not words:
-        message = "no problem"
-        raise ValueError(message)
+        raise ValueError("no problem")
     return Problem(
         assembly=assembly,
         mu=float(given.pop("mu")),
@@ -163,8 +162,7 @@ def _points(record: Any) -> Array:
     """Return points in space, (k, 3), at least one."""
     found = np.array(record, dtype=float)
     if found.ndim != 2 or found.shape[1] != 3 or not len(found):
-        message = "no points"
-        raise ValueError(message)
+        raise ValueError("no points")
     return found
 
 

@@ -243,8 +243,7 @@ def toml_of(text: bytes) -> dict[str, Any]:
     said = text.decode()
     # The parser takes time and memory as the square of a key's depth, and more.
     if _DEEP_KEY.search(said):
-        message = f"a key of more than {DEEPEST_KEY} parts"
-        raise ValueError(message)
+        raise ValueError(f"a key of more than {DEEPEST_KEY} parts")
     with _in_words():
         found = tomllib.loads(said)
         _require_bounded(found)
@@ -265,8 +264,7 @@ def _in_words() -> Generator[None]:
     try:
         yield
     except RecursionError:
-        message = "nested too deeply"
-        raise ValueError(message) from None
+        raise ValueError("nested too deeply") from None
 
 
 def _whole(digits: str) -> int | float:
@@ -286,8 +284,7 @@ def _require_bounded(found: object) -> None:
         elif isinstance(each, list):
             todo.extend(cast("list[object]", each))
         elif isinstance(each, int) and abs(each) >= 10**LONGEST_WHOLE:
-            message = f"a whole number of {each.bit_length()} bits"
-            raise ValueError(message)
+            raise ValueError(f"a whole number of {each.bit_length()} bits")
 
 
 def _sync_folder(path: Path) -> None:

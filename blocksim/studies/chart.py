@@ -167,8 +167,7 @@ def _measured(
     if REFINEMENTS[knob].against == "theory":
         truth = theory.least_thickness(arch.half_angle, mu).eta
     if exact is None or truth is None:
-        message = "an arch that nothing lets stand has no error to measure"
-        raise ValueError(message)
+        raise ValueError("an arch that nothing lets stand has no error to measure")
     processor_s: list[float] = []
     wall_s: list[float] = []
     found = _Found()

@@ -95,8 +95,7 @@ def picture_of_theory(
     moment = critical_moment(half_angle, critical, weight)
     eta, thrust = critical.eta, critical.thrust
     if eta is None or thrust is None:
-        message = "no thickness stands"
-        raise ValueError(message)
+        raise ValueError("no thickness stands")
     found = collapse_of_mode(
         mode, half_angle, eta, mu,
         beta_r=critical.beta_r, beta_s=inner_sliding(mu)[1], weight=weight,

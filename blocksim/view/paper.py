@@ -144,8 +144,7 @@ def _arches(number: int) -> Figure:
 def complementary_of(arch: PaperArch) -> Complementary:
     """Solve eqs (15) and (16) on joints where the continuous arch turns and slides."""
     if arch.critical.eta is None:
-        message = f"no thickness stands at a half-angle of {arch.half_angle}"
-        raise ValueError(message)
+        raise ValueError(f"no thickness stands at a half-angle of {arch.half_angle}")
     # Where modes coincide theory names the inner sliding joint of one that has it.
     places = [arch.critical.beta_r or 0.0]
     if math.isfinite(arch.mu):
@@ -159,8 +158,7 @@ def picture_of_voussoirs(arch: PaperArch) -> ArchPicture:
     found = complementary_of(arch)
     ways = [each for each in found.modes if each.mode is arch.mode]
     if not ways or arch.critical.eta is None:
-        message = f"no mechanism {arch.mode} on these voussoirs"
-        raise ValueError(message)
+        raise ValueError(f"no mechanism {arch.mode} on these voussoirs")
     way = ways[0]
     others = [str(each.mode) for each in found.modes if each is not way]
     besides = f"; besides: {', '.join(others)}" if others else ""

@@ -45,8 +45,7 @@ def collapse_of_mode(
     found = found / found.sum()
     misfit = np.abs(program.matrix[rows].T @ found).max()
     if found.min() < -COMPATIBLE or misfit > COMPATIBLE:
-        message = f"no mechanism {mode} with these joints"
-        raise ValueError(message)
+        raise ValueError(f"no mechanism {mode} with these joints")
     rates = np.zeros((angles.size, 4))
     rates.reshape(-1)[rows] = np.maximum(found, 0.0)
     return of_half(angles, rates, eta, mu)

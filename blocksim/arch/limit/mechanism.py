@@ -211,8 +211,7 @@ def _optimum(program: Conditions, about: Array, unit: float) -> tuple[Array, Arr
         (low, high),
     )
     if not found.exists:
-        message = "HiGHS found no optimum"
-        raise RuntimeError(message)
+        raise RuntimeError("HiGHS found no optimum")
     rates: Array = np.maximum(-found.prices, 0.0)
     rates[rates < ACTIVE] = 0.0
     return about + unit * found.values, rates

@@ -58,8 +58,7 @@ def critical_moment(half_angle: float, critical: Critical, weight: Weight) -> fl
     The line of thrust touches the intrados at the inner hinge.
     """
     if critical.eta is None or critical.thrust is None or critical.beta_r is None:
-        message = f"no thickness stands at a half-angle of {half_angle}"
-        raise ValueError(message)
+        raise ValueError(f"no thickness stands at a half-angle of {half_angle}")
     beta, eta, thrust = critical.beta_r, critical.eta, critical.thrust
     unforced = section_moment(beta, thrust, 0.0, eta, weight)
     return float(-normal_force(beta, thrust) * eta / 2 - unforced)
