@@ -157,13 +157,16 @@ def _silence() -> Generator[None]:
 
 
 if TYPE_CHECKING:
+    import flint as flint
     from scipy import linalg as linalg
     from scipy import optimize as optimize
     from scipy import sparse as sparse
+    from scipy.optimize import elementwise as elementwise
     from scipy.sparse import csgraph as csgraph
     from scipy.sparse import linalg as sparse_linalg  # pyright: ignore[reportUnusedImport]
     from scipy.spatial import transform as transform
 else:
+    flint, elementwise = Library("flint"), Library("scipy.optimize.elementwise")
     linalg, optimize = Library("scipy.linalg"), Library("scipy.optimize")
     sparse, csgraph = Library("scipy.sparse"), Library("scipy.sparse.csgraph")
     sparse_linalg = Library("scipy.sparse.linalg")

@@ -8,18 +8,13 @@ import operator
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.common.later import Library
+from blocksim.common.later import flint
 from blocksim.limit.exact import Exact, Number, apart, moment
-
-if TYPE_CHECKING:
-    import flint
-else:
-    flint = Library("flint")
 
 FINE = 1 << 20
 """Into how many parts the room of a point is told."""

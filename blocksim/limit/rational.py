@@ -12,20 +12,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.common.errors import Unsolved
-from blocksim.common.later import Library, sparse
+from blocksim.common.later import flint, sparse
 from blocksim.limit.exact import NOTHING, Exact, Point, apart, spun
 from blocksim.limit.linear import LinearProgramme
-
-if TYPE_CHECKING:
-    import flint
-else:
-    flint = Library("flint")
 
 LARGEST = 300
 """Most equations that are solved in rational numbers."""

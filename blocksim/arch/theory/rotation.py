@@ -18,7 +18,7 @@ import sys
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, get_args
+from typing import Any, NamedTuple, get_args
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -29,13 +29,8 @@ from blocksim.arch.theory.equations import BEYOND
 from blocksim.arch.theory.sliding import Thrusts
 from blocksim.blocks.assembly import Array
 from blocksim.common.files import write_whole
-from blocksim.common.later import Library
+from blocksim.common.later import elementwise
 from blocksim.common.series import p_series, r_series
-
-if TYPE_CHECKING:
-    from scipy.optimize import elementwise
-else:
-    elementwise = Library("scipy.optimize.elementwise")
 
 EDGES = (0.0, 0.75, 0.94, 0.985, 0.996, 1.0)
 """Pieces of the interpolation in (alpha/alpha_l)^2: a branch point lies just beyond."""
