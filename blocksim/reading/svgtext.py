@@ -6,6 +6,7 @@ import math
 import re
 from dataclasses import dataclass, field
 
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.reading.curves import LINE, Chords, Corners, bezier, ellipse
 
@@ -48,11 +49,11 @@ def lines_of(text: str) -> list[Line]:
         if text[at].isalpha() and text[at] not in "eE":
             command, at = text[at], at + 1
             known = command.lower() in GIVEN and (lines or command in "mM")
-            _require_path(bool(known), text[at - 1 : at + 19], "begun with M, as SVG has it")
+            begun = "begun with M, as SVG has it"
+            require(bool(known), "path", text[at - 1 : at + 19], begun)
         else:
-            _require_path(
-                command not in {"", "z", "Z"}, text[at : at + 20], "commands, numbers"
-            )
+            going = command not in {"", "z", "Z"}
+            require(going, "path", text[at : at + 20], "commands, numbers")
             # More points after the first of M are those of lines.
             command = {"m": "l", "M": "L"}.get(command, command)
         name = command.lower()
@@ -105,11 +106,6 @@ def _on(
         steer = points[1]
     line.to(end, bezier([here, *points, end]))
     return end, steer
-
-
-def _require_path(ok: bool, said: str, allowed: str) -> None:
-    if not ok:
-        raise InputError("path", said, allowed)
 
 
 def _past_space(text: str, at: int) -> int:
