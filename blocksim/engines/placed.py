@@ -45,7 +45,7 @@ class Placed:
         self._solution: Solution | None = None
         self._guess = NO_GUESS
         self._seen: tuple[Array, NDArray[np.int64], Touch] | None = None
-        self._residual, self._patient = 0.0, False
+        self._residual = 0.0
 
     def _speeds(self) -> Array:
         """Return the largest velocity of each block's corners, at most, shape (blocks,)."""
@@ -127,9 +127,7 @@ class Placed:
         keys, guess = self._guess
         if guess is None or keys is not self._keys:
             guess = self._solution
-        solution = self._problem.solve(
-            touch.rows, rates, self._free, guess, precision, patient=self._patient
-        )
+        solution = self._problem.solve(touch.rows, rates, self._free, guess, precision)
         self._guess, self._solution = NO_GUESS, solution
         # Unlike max, this keeps nan.
         self._residual = float(np.maximum(self._residual, solution.residual))

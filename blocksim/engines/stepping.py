@@ -122,15 +122,12 @@ class Stepping(Placed):
         """Take a step, halved until it is solved; return what passed, and its length."""
         before = vars(self).copy()
         found = take(step)
-        for left in reversed(range(HALVINGS)):
+        for _ in range(HALVINGS):
             if self._residual <= max(RESIDUAL, before["_residual"]):
                 break
             vars(self).update(before)
             step /= 2
-            # A long path is dearer than half a step.
-            self._patient = not left
             found = take(step)
-        self._patient = False
         return found, step
 
     def _to_impact(

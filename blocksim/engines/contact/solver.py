@@ -17,11 +17,11 @@ What each contact does is guessed, and mended until all forces and velocities ag
   then to the last (`associated.py`): of the two answers that Coulomb's may have, rest and
   motion, that is rest if there is any;
 - the end of an interior-point method for Coulomb friction, steep one less;
-- of friction that is not steep, in motion solutions for friction that dilates with slips found
-  before (`averaged.py`), and a short path from their end; from nothing short paths, and what
-  springs make of the way of alternating directions (`alternating.py`);
-- the end of a path from all contacts apart (`path_following.py`), in motion only where half a
-  step is no way out, of steep friction with the forces found so far first.
+- of friction that is not steep, in motion the end of a path that goes around its folds
+  (`jammed.py`), and a short one from there; from nothing short paths, and what springs make of
+  the way of alternating directions (`alternating.py`);
+- the end of a path from all contacts apart (`path_following.py`): from nothing, and of steep
+  friction, then with the forces found so far first.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.active_set import by_active_set
 from blocksim.engines.contact.alternating import alternated
 from blocksim.engines.contact.associated import augmented_lagrangian, parted
-from blocksim.engines.contact.averaged import averaged
 from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.coulomb import Contacts, Friction
 from blocksim.engines.contact.interior import CAREFUL, central_path
+from blocksim.engines.contact.jammed import around_folds
 from blocksim.engines.contact.path_following import (
     LAST_PIECES,
     NEAREST_PIECES,
@@ -63,6 +63,8 @@ SOLVED = 1e-9
 """Residual of a solution."""
 TAME = 10.0, 3.0
 """Friction that is taken in place of steep one, for guesses of what contacts do."""
+FAR = 4.0
+"""Velocity of joints that open, over the fastest that close, from which they are left out."""
 ENOUGH = 3e-8
 """Residual for which no path is followed: of a moving step, because once they have moved joints
 may not close any better; from nothing if contacts are told, as a path tells them no better."""
@@ -112,6 +114,7 @@ class ContactProblem:
         mu: ArrayLike,
         points: Array | None = None,
     ) -> None:
+        self._before, self._after, self._mass, self._points = before, after, mass, points
         self.friction = Friction.of(mu, len(before))
         self.root = np.sqrt(mass)
         self.bands = Bands(before, after, len(mass), points)
@@ -124,8 +127,6 @@ class ContactProblem:
         free: Array,
         start: Solution | None = None,
         precision: float = EXACT,
-        *,
-        patient: bool = False,
     ) -> Solution:
         """Solve one step.
 
@@ -135,7 +136,6 @@ class ContactProblem:
         `free`, (blocks, 3): Accelerations without contact (f).
         `start`: Of a similar step.
         `precision`: Yield of contacts at which the step counts as solved [g].
-        `patient`: Whether a path is followed from all contacts apart, after a similar step too.
         """
         if not len(rates):
             # Nothing touches anything.
@@ -146,6 +146,39 @@ class ContactProblem:
                 residual=0.0,
                 iterations=0,
             )
+        # What opens faster than others close carries nothing, or is taken in where it closes.
+        closing = rates[:, :2] + self.bands.along(rows[:, :2], free.ravel())
+        fastest = max(1.0, -float(closing.min()))
+        near = rates[:, :2].min(axis=1) <= FAR * fastest
+        every = np.arange(len(rates))
+        while not near.all():
+            which = np.flatnonzero(near)
+            begun = start.carried(every, which) if start else None
+            part = self._of(near)
+            found = part.solve(rows[near], rates[near], free, begun, precision).carried(
+                which, every
+            )
+            closing = rates[:, :2] + self.bands.along(rows[:, :2], found.acceleration.ravel())
+            closes = ~near & (closing < 0).any(axis=1)
+            if not closes.any():
+                return found
+            near |= closes
+        return self._solved(rows, rates, free, start, precision)
+
+    def _of(self, near: NDArray[np.bool_]) -> ContactProblem:
+        """Return the problem without the other joints."""
+        mu, before, after = self.friction.mu[near, 0], self._before[near], self._after[near]
+        return ContactProblem(before, after, self._mass, mu, self._points)
+
+    def _solved(
+        self,
+        rows: Array,
+        rates: Array,
+        free: Array,
+        start: Solution | None,
+        precision: float,
+    ) -> Solution:
+        """Solve a step with all joints."""
         step = Step(
             bands=self.bands,
             rows=rows * self.scale,
@@ -154,7 +187,7 @@ class ContactProblem:
             friction=self.friction,
         )
         with self.bands.one_thread():
-            tried = _Tried(step, precision, moves=start is not None, patient=patient)
+            tried = _Tried(step, precision, moves=start is not None)
             guesses = self._from(step, start, tried) if start else _from_nothing(step, tried)
             for guess in guesses:
                 if guess and tried.settle(guess):
@@ -181,12 +214,11 @@ class ContactProblem:
         yield path_from_guess(step, guess, LAST_PIECES)
         for tame in _tamed(step):
             if not tried.is_enough:
-                yield (guess := _coulomb(tame, CAREFUL[2], moves=True))
-        if not step.friction.some_steep:
-            for begun in (guess.x, x):
-                if not tried.is_enough:
-                    yield from _by_slips(step, tried, begun)
-        if (tried.patient or step.friction.some_steep) and not tried.is_enough:
+                yield _coulomb(tame, CAREFUL[2], moves=True)
+        if not step.friction.some_steep and not tried.is_enough:
+            yield (found := around_folds(step))
+            yield path_from_guess(step, found, LAST_PIECES)
+        if step.friction.some_steep and not tried.is_enough:
             yield path_from_apart(step)
 
 
@@ -195,13 +227,12 @@ class _Tried:
 
     `precision`: Yield of contacts at which it counts as solved [g].
     `moves`: Whether the last step is known.
-    `patient`: Whether a long path is followed all the same.
     `may_rest`: Whether a motion is no solution yet, as rest has to be looked for first.
     """
 
-    def __init__(self, step: Step, precision: float, *, moves: bool, patient: bool) -> None:
+    def __init__(self, step: Step, precision: float, *, moves: bool) -> None:
         self._step, self._precision = step, precision
-        self.moves, self.patient = moves, patient
+        self.moves = moves
         self._answers: list[Answer] = []
         self.may_rest = False
         self.systems = 0
@@ -300,16 +331,6 @@ def _coulomb(step: Step, careful: float = CAREFUL[0], *, moves: bool = False) ->
     cones = Cones.of(step)
     found = central_path(step, cones, dilates=False, careful=careful, moves=moves)
     return cones.answer(step, *found)
-
-
-def _by_slips(step: Step, tried: _Tried, x: Array) -> Iterator[Answer | None]:
-    """Give what friction that dilates tells with slips found before, and a path from there."""
-    for found in averaged(step, x, ENOUGH):
-        yield found
-        if tried.is_enough:
-            # It tells what is near, and not what each contact does.
-            yield path_from_guess(step, found, LAST_PIECES)
-            return
 
 
 def _at_last(step: Step, tried: _Tried) -> Iterator[Answer | None]:

@@ -2,13 +2,10 @@
 
 With y = (p_n, p_t / mu) and v = (u_n + mu s, mu u_t), where s is how fast a contact slips, a
 solution has y and v in round cones, and y v = 0 (De Saxce and Feng 1998). On the path that
-product is tau in each contact, and s is smoothed by tau. For a large tau there is one such
-point, which Newton's method finds. As tau falls to 0 a point becomes a solution.
-
-On its way tau need not fall: beyond the limit of rest, and where blocks jam, paths of falling
-tau end at residuals of 1e-2 to 1e-4. So it is followed around its folds, as Lemke's pivoting
-follows contacts in the plane: the sign of a determinant says which way leads on (Allgower and
-Georg 1990). Steps are scaled as those of interior points are (Nesterov and Todd 1997).
+product is tau in each contact, and s is smoothed by tau. It is followed around its folds, by
+`contact/folds.py`: beyond the limit of rest, and where blocks jam, paths of falling tau end at
+residuals of 1e-2 to 1e-4. Steps are scaled as those of interior points are (Nesterov and Todd
+1997).
 """
 
 from __future__ import annotations
@@ -16,44 +13,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
+from blocksim.engines.contact.folds import FIRST, Path, Point
 from blocksim.engines.solid.step import ALIKE, Step, slip_of
 
-FIRST = 10.0
-"""Product of force and velocity with which it begins."""
 STOPS = 1e-9, 1e-11
 """Products at which springs are tried; those nearer are lost in round-off."""
-WIDE, NEAR = 1.0, 0.3
-"""How far off the path a point may be, and up to where steps grow."""
-LONGEST, SHORTEST, GROWTH = 1.0, 1e-6, 1.5
-"""Of steps along it, over tau's logarithm where that is all that changes."""
-INSIDE = 0.9
-"""Share of the way to a cone's surface that a step takes at most."""
-LEAST = 0.5
-"""Least part of a step that is taken."""
 STEPS = 2000
 """Most steps: none of a hundred vaults and domes beyond their limit took more than 1,300."""
 FLIP = np.array([1.0, -1.0, -1.0])
-
-
-class Point(NamedTuple):
-    """A point near the path, or a way from one to another.
-
-    `x`, (6 blocks,), `y` and `v`, (points, 3), and the logarithm of tau.
-    """
-
-    x: Array
-    y: Array
-    v: Array
-    log: float
-
-    def moved(self, way: Point, share: float) -> Point:
-        """Return the point after a share of a way."""
-        return Point._make(at + share * part for at, part in zip(self, way, strict=True))
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,8 +65,8 @@ def followed(step: Step, most: int) -> Iterator[Array]:
     yield path.forces
 
 
-class _Path:
-    """The path, and where on it one is."""
+class _Path(Path[Look]):
+    """The path of a step."""
 
     def __init__(self, step: Step) -> None:
         self._step, count = step, len(step.friction)
@@ -103,48 +74,14 @@ class _Path:
         self._scale[:, 1:] = step.friction[:, None]
         even = np.zeros((count, 3))
         even[:, 0] = math.sqrt(FIRST)
-        self._at = Point(step.free, even, even, math.log(FIRST))
-        self._look = self._looked(self._at)
-        self._begun = False
-        self._length: float = NEAR
-
-    @property
-    def tau(self) -> float:
-        """Product of force and velocity by now."""
-        return math.exp(self._at.log)
+        super().__init__(Point(step.free, even, even, math.log(FIRST)))
 
     @property
     def forces(self) -> Array:
         """Forces, (points, 3)."""
         return self._scale * self._at.y
 
-    def go(self) -> bool:
-        """Take a step; tell whether that was possible."""
-        found = self._look and self._ways(self._look)
-        if not found:
-            return False
-        back, along = found
-        tried = self._length if self._begun else 0.0
-        while True:
-            way = back.moved(along, tried)
-            share = min(1.0, INSIDE * min(_room(self._at.y, way.y), _room(self._at.v, way.v)))
-            there = self._at.moved(way, share)
-            look = self._looked(there)
-            if not tried or (look and look.off < WIDE and share >= LEAST):
-                break
-            tried = tried / 2 if tried > SHORTEST else 0.0
-        if look is None:
-            return False
-        self._at, self._look = there, look
-        if not self._begun:
-            self._begun = look.off < NEAR and share == 1.0
-        elif tried:
-            grows = tried == self._length and look.off < NEAR
-            self._length = min(LONGEST, GROWTH * tried) if grows else tried
-        return True
-
     def _looked(self, at: Point) -> Look | None:
-        """Look at a point; None where it is in the cones no more."""
         step, tau = self._step, math.exp(at.log)
         velocities = step.velocities(at.x)
         slips = np.hypot(slip_of(velocities), tau)
@@ -169,8 +106,7 @@ class _Path:
         widen = _turned(FLIP * middle) / stiff
         return Look(tau, slips, velocities, squeeze, widen, left, off)
 
-    def _ways(self, look: Look) -> tuple[Point, Point] | None:
-        """Return the way back to the path, across it, and that along it, of length 1."""
+    def _newton(self, look: Look) -> tuple[Point, Point, float] | None:
         step, at, tau = self._step, self._at, look.tau
         mu, rows, bands = step.friction, step.rows, step.bands
         # What v changes by with velocities, and with the logarithm of tau.
@@ -196,12 +132,7 @@ class _Path:
                 (found[:, 1], smoother, aim, 1.0),
             )
         )
-        size = _product(look, along, along)
-        if not size > 0:
-            return None
-        back = back.moved(along, -_product(look, back, along) / size) if self._begun else back
-        nothing = Point._make(0.0 * each for each in along)
-        return back, nothing.moved(along, -sign / math.sqrt(size))
+        return back, along, sign
 
     def _way(
         self, look: Look, slope: Array, x: Array, known: Array, change: Array, log: float
@@ -211,12 +142,13 @@ class _Path:
         v = known + _times(slope, step.bands.along(step.rows, x))
         return Point(x, change - _times(look.squeeze, v), v, log)
 
+    def _product(self, look: Look, one: Point, other: Point) -> float:
+        pressing = (one.v * _times(look.squeeze, other.v)).sum()
+        parting = (one.y * _times(look.widen, other.y)).sum()
+        return float(pressing + parting) / (look.tau * len(one.y)) + one.log * other.log
 
-def _product(look: Look, one: Point, other: Point) -> float:
-    """Return the inner product of two ways."""
-    pressing = (one.v * _times(look.squeeze, other.v)).sum()
-    parting = (one.y * _times(look.widen, other.y)).sum()
-    return float(pressing + parting) / (look.tau * len(one.y)) + one.log * other.log
+    def _room(self, way: Point) -> float:
+        return min(_room(self._at.y, way.y), _room(self._at.v, way.v))
 
 
 def _times(matrices: Array, vectors: Array) -> Array:
