@@ -19,7 +19,16 @@ from rocking import on_shaking_ground
 from running import answered, inside
 from scipy.optimize import brentq
 
-from blocksim import Problem, Recording, Verdict, check, load_recording, simulate, structure_of
+from blocksim import (
+    Problem,
+    Recording,
+    Verdict,
+    check,
+    extruded,
+    load_recording,
+    simulate,
+    structure_of,
+)
 
 G = 9.81
 BOTH = pytest.mark.parametrize("method", ["direct", "pymunk"])
@@ -293,6 +302,31 @@ def test_gravity_is_an_option_and_is_told(tmp_path: Path) -> None:
     problem = json.loads(said.stdout)["problem"]
     assert problem["gravity_m_s2"] == pytest.approx([0, -1.62, 0])
     assert "gravity 1.62 m/s2" in inside("check", path, "--gravity", "1.62").stdout
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("method", ["direct", "pymunk", "pybullet", "mujoco"])
+def test_what_falls_beside_blocks_that_rest_falls(method: str, in_space: bool) -> None:
+    """No joint moves: the round-off of those at rest was taken for blocks that overlap."""
+    if in_space and method == "pymunk":
+        pytest.skip("of the plane alone")
+    if method != "direct":
+        pytest.importorskip(method, exc_type=ImportError)
+    stands = {"id": 1, "vertices": [[0, 0], [1, 0], [1, 1], [0, 1]]}
+    above = {
+        "id": 2,
+        "vertices": [[0.2, 1.47], [1.2, 1.47], [1.2, 2.47], [0.2, 2.47]],
+        "free": True,
+    }
+    floor = {"id": 0, "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]], "fixed": True}
+    problem: Problem[Any] = structure_of(
+        {"friction": 0.5, "size": 1, "blocks": [floor, stands, above]}
+    )
+    problem = extruded(problem) if in_space else problem
+    assert check(problem, method=method).verdict is Verdict.COLLAPSES
+    ends = simulate(problem, method=method, duration=1.5).poses[-1]
+    heights = ends[:, 2 if in_space else 1] * problem.assembly.size
+    assert heights == pytest.approx([0.5, 1.5], abs=2e-3)
 
 
 @pytest.mark.long

@@ -61,6 +61,10 @@ class JointMotion:
     turn: Array
 
 
+BESIDE = 1e-3
+"""Motion of joints, as a share of that of blocks, less than which is round-off beside it."""
+
+
 def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
     """Measure every joint at one instant.
 
@@ -103,10 +107,10 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
 def overlap_and_slip(assembly: Assembly, poses: Array) -> tuple[float, float]:
     """Deepest overlap at the end of a joint, and largest slip of one.
 
-    Both are shares of the largest motion of a joint: opening by rotation, or slip. A corner has
-    no length: the reach of the smaller block stands for it. A motion that contacts allow has
-    next to no overlap; one driven by contacts that have not converged presses blocks into each
-    other.
+    Both are shares of the largest motion of a joint: opening by rotation, or slip, or `BESIDE`
+    of how far blocks go, some of which no joint may hold. A corner has no length: the reach of
+    the smaller block stands for it. A motion that contacts allow has next to no overlap; one
+    driven by contacts that have not converged presses blocks into each other.
     """
     motion, joints = joint_motion(assembly, poses), assembly.joint_arrays
     gap, slip = motion.gap.min(axis=1), np.abs(motion.slip)
@@ -114,11 +118,13 @@ def overlap_and_slip(assembly: Assembly, poses: Array) -> tuple[float, float]:
         joints.is_corner, assembly.lesser_reach, joints.length
     )
     parted = np.where(joints.is_corner, np.abs(motion.gap[:, 0]), 0.0)
-    moves = [turned, parted, slip]
+    gone = BESIDE * assembly.displacement(poses[:, :PLANAR] - assembly.built[:-1])
+    moves = [turned, parted, slip, gone]
     moved = max(float(move.max(initial=0.0)) for move in moves)
     if not moved > 0:
         return 0.0, 0.0
-    return max(0.0, -float(gap.min())) / moved, float(slip.max()) / moved
+    deepest = max(0.0, -float(gap.min(initial=0.0)))
+    return deepest / moved, float(slip.max(initial=0.0)) / moved
 
 
 ACTIVE = 0.02

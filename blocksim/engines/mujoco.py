@@ -72,6 +72,8 @@ ENGINE = Engine(
     takes_forces=True,
     keeps_impulses=True,
     contacts=4,
+    # When in a step blocks hit is chance.
+    beside=(2.0, 1.5, 0.5),
     chart={
         "tolerance": (1e-2, 1e-3),
         "step": (1 / 120, 1 / 480, 1 / 1920),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.joints import BESIDE
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.common.later import transform
 
@@ -38,15 +39,17 @@ def overlap_and_slip_in_space(assembly: SpatialAssembly, poses: Array) -> tuple[
     """Deepest overlap at a point of a joint, and largest slip at one that stays closed.
 
     Both are shares of the largest motion of a point; or of what turns about an edge or a
-    corner: its turn times the reach of the smaller block.
+    corner: its turn times the reach of the smaller block; or `BESIDE` of how far blocks go.
     """
     gap, slip = parted(assembly, poses)
     turns = transform.Rotation.from_rotvec(np.vstack([poses[:, 3:], np.zeros(3)]))
     before, after = assembly.sides
     turned = (turns[before].inv() * turns[after]).magnitude() * assembly.lesser_reach
     turned = turned[[len(each.points) < FACE for each in assembly.joints]]
-    moved = max(float(each.max(initial=0.0)) for each in (np.abs(gap), slip, turned))
+    gone = poses - np.hstack([assembly.centres / assembly.size, np.zeros((len(poses), 3))])
+    moves = np.abs(gap), slip, turned, BESIDE * assembly.displacement(gone)
+    moved = max(float(each.max(initial=0.0)) for each in moves)
     if not moved > 0:
         return 0.0, 0.0
-    slides = float(np.where(gap < slip, slip, 0.0).max())
-    return max(0.0, -float(gap.min())) / moved, slides / moved
+    slides = float(np.where(gap < slip, slip, 0.0).max(initial=0.0))
+    return max(0.0, -float(gap.min(initial=0.0))) / moved, slides / moved
