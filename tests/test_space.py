@@ -48,6 +48,7 @@ from blocksim.limit.space.cones import _left_over
 from blocksim.view.solidfigure import solid_figure
 from blocksim.view.solidscene import moving_box, supports_of
 from blocksim.view.style import JOINTS
+from blocksim.view.turning import turning_page
 
 SOLID_KINDS = {name: kind for name, kind in KINDS.items() if kind.in_space}
 
@@ -526,11 +527,13 @@ def test_a_picture_shows_the_verdict_and_what_joints_do(tmp_path: Path) -> None:
     assert JOINTS[JointState.HINGE_INTRADOS].lower() in drawn.lower()
 
 
-def test_a_picture_says_a_push_and_towards_where() -> None:
-    """By what shares of the weight it is pushed, in its words."""
+def test_a_picture_and_a_page_say_a_push_and_towards_where() -> None:
+    """By what shares of the weight it is pushed, in their words."""
     wall = with_push(replace(ReturnWall(friction=0.5).problem(), azimuth=math.radians(60)), 0.1)
-    words = [each.get_text() for each in solid_figure(blocksim.check(wall)).findobj(Text)]
-    assert any("a push of 0.1 of each weight towards 60° from x" in each for each in words)
+    answer, said = blocksim.check(wall), "a push of 0.1 of each weight towards 60° from x"
+    words = [each.get_text() for each in solid_figure(answer).findobj(Text)]
+    assert any(said in each for each in words)
+    assert said in turning_page(answer)
 
 
 def test_an_arch_that_leans_is_drawn_on_its_springings() -> None:

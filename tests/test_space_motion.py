@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, Delaunay
 from scipy.spatial.transform import Rotation
 from space_cases import GROUND, NAMES, asked, box, case, enclosed, problem_of
 from worlds import observe
@@ -34,6 +34,7 @@ from blocksim.engines.solid.stepping import SolidBlocks, depth
 from blocksim.simulation.looking import Looking
 from blocksim.simulation.simulated import Simulation
 from blocksim.view.film import Film
+from blocksim.view.timeline import UPRIGHT
 
 
 @pytest.mark.parametrize("name", NAMES[::3])
@@ -333,6 +334,13 @@ def test_a_film_keeps_all_blocks_in_frame_and_says_whether_they_move() -> None:
         x, y = (view.centre + film.share(seconds) * (places - view.centre)).T
         assert 0 < x.min() < x.max() < film.width
         assert 0 < y.min() < y.max() < film.height
+    # A scale bar is before all that stands, and its words are in the picture.
+    bar, (words,) = view.scale_bar(0.5, "0.5 m", film.height / 720)
+    box = np.concatenate([view.places(hull.corners @ UPRIGHT.T / stage.assembly.size)
+                          for hull in stage.supports])  # fmt: skip
+    for strip in bar:
+        assert not Delaunay(box).find_simplex(strip.points).max() >= 0
+    assert 0 < words.y < film.height
     first, last = film.frame(0), film.frame(film.count - 1)
     assert first.shape == (180, 320, 4)
     assert (first != last).any()

@@ -27,7 +27,7 @@ from blocksim.view.captions import (
     verdict_words,
 )
 from blocksim.view.drawing import round_length, words_of
-from blocksim.view.stage import SolidStage, Stage
+from blocksim.view.stage import SPOKEN, SolidStage, Stage
 from blocksim.view.style import INK, JOINTS, QUIET, THRUST
 from blocksim.view.views import PlanarView, SpatialView, View
 
@@ -107,7 +107,10 @@ class Film:
         kind: Any = PlanarView if self._flat else SpatialView
         # One scale for all, so that they can be compared.
         framed = [*stages, *map(stage_of, beside)]
-        shown = np.concatenate([stage.swept - [stage.middle, 0.0, 0.0] for stage in framed])
+        shown = [stage.swept - [stage.middle, 0.0, 0.0] for stage in framed]
+        # The words of a scale bar have room, too.
+        words = [[0.0, stage.ground, stage.front + SPOKEN] for stage in framed]
+        shown = np.concatenate([*shown, *([] if self._flat else [words])])
         self.shots: list[Shot] = []
         for stage, panel in zip(stages, self._arrange(len(stages)), strict=True):
             seen = kind(stage, panel, shown)

@@ -39,6 +39,10 @@ FOLLOWED = 5.0
 """How far a camera follows blocks that go on and on [widths of what it shows at first]."""
 BESIDE, ABOVE = 0.25, 0.1
 """How far beyond the blocks supports are shown, sidewards and upwards [r]."""
+APART, CLEAR = 0.35, 0.1
+"""How far a scale bar lies in front of blocks of the plane, and of all there is in space."""
+SPOKEN = 0.3
+"""Room for its words in front of it."""
 WIDER = 1.12
 """Depth of the footings over that of the blocks."""
 DIGITS = 9
@@ -62,7 +66,8 @@ class Stage(Timeline):
     """Everything that is drawn of a recording of the plane, whatever the view.
 
     It knows convex outlines of footings, cut off far from the blocks, the level of the ground,
-    the distance from block to block (`grain`), and their middle.
+    the distance from block to block (`grain`), their middle, and where a scale bar lies in
+    perspective (`front`).
     """
 
     eye = math.radians(-32.0), math.radians(14.0)
@@ -79,6 +84,7 @@ class Stage(Timeline):
         ]
         super().__init__(recording, near, faces)
         self.depth = float(self.assembly.depths.max())
+        self.front = self.depth / 2 + APART
         self.is_arch = recording.problem.is_arch
         rest = np.concatenate([block.vertices for block in self.assembly.blocks]) / size
         self._low, self._high = rest.min(axis=0), rest.max(axis=0)
@@ -241,7 +247,7 @@ class SolidStage(Timeline):
     """Everything that is drawn of a recording in space, without what is far from the blocks.
 
     `depth` is that of all towards the viewer, `grain` the size of the smallest block, `ground`
-    the lowest level that anything comes to.
+    the lowest level that anything comes to, and `front` is before all that is seen.
     """
 
     eye = math.radians(30.0), math.radians(22.0)
@@ -270,6 +276,7 @@ class SolidStage(Timeline):
         self.ground = float(self.swept[:, 1].min())
         self.middle = float(low[0] + high[0]) / 2
         self.depth = float(high[1] - low[1])
+        self.front = float(self.swept[:, 2].max()) + CLEAR
         self.grain = float(self.assembly.reach.min()) / size
 
     def solids(self, line: float) -> Solids:

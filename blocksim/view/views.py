@@ -42,9 +42,6 @@ SHADOW = 0.72
 """Brightness of the ground in the shade."""
 RINGS = 60
 """Discs that the ground fades out in."""
-APART, CLEAR, SPOKEN = 0.35, 0.1, 0.3
-"""How far a scale bar lies in front of blocks of the plane, and of all that is shown in space,
-and how far in front of itself its words have room [size]."""
 AHEAD = 0.01
 """Way along a vector by which its direction in the picture is found [size]."""
 
@@ -175,15 +172,12 @@ class SpatialView:
         shown = shown + np.array([stage.middle, 0.0, 0.0])
         low, high = shown.min(axis=0), shown.max(axis=0)
         self._aside = 0.0 if stage.is_arch else float(low[0] + high[0]) / 2
-        is_solid = isinstance(stage, SolidStage)
-        out = float(low[2] + high[2]) / 2 if is_solid else 0.0
+        out = 0.0 if isinstance(stage, Stage) else float(low[2] + high[2]) / 2
         middle = np.array([self._aside, (stage.ground + high[1]) / 2, out])
         self._foot = np.array([self._aside, stage.ground, out])
-        self._near = float(high[2]) + CLEAR if is_solid else stage.depth / 2 + APART
         self._reach = float(np.linalg.norm(shown - middle, axis=1).max())
         self._camera = camera = Camera(middle, self._reach, *stage.eye)
-        words = np.array([[self._aside, stage.ground, self._near + SPOKEN]])
-        flat = camera.seen(np.vstack([shown, words]) if is_solid else shown)
+        flat = camera.seen(shown)
         size = flat.max(axis=0) - flat.min(axis=0)
         free = np.array([panel.width, panel.height]) * (1 - 2 * AROUND)
         camera.scale = float((free / size).min())
@@ -199,7 +193,7 @@ class SpatialView:
         self, length: float, words: str, size: float
     ) -> tuple[list[Shape], list[Label]]:
         """Lay a bar of a length [r] on the ground in front of the blocks, with its words."""
-        near, level, wide = self._near, self._stage.ground, 0.035
+        near, level, wide = self._stage.front, self._stage.ground, 0.035
         shapes: list[Shape] = []
         ink, paper = colour(INK), colour(PAPER)
         for part in range(4):

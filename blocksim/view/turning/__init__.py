@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import blocksim
-from blocksim.common.words import counted
 from blocksim.view.models import mechanism_model
-from blocksim.view.sheet import title_of
+from blocksim.view.sheet import built_words, title_of
 from blocksim.view.solidscene import told
 from blocksim.view.style import INK, PAPER, QUIET, VERDICTS
 from blocksim.view.templates import template_of
@@ -29,7 +28,7 @@ def turning_page(answer: Check[SpatialAssembly]) -> str:
     return template_of("blocksim.view.turning", "page.html").render(
         title=title_of(problem),
         verdict=f"{answer.verdict.value}, by {answer.method}",
-        about=f"{counted(len(problem.assembly.blocks), 'block')}, mu {problem.mu:g}",
+        about=", ".join(built_words(problem)),
         model=base64.b64encode(mechanism_model(answer)).decode(),
         told=told(each.state for each in answer.joints),
         moves=answer.mechanism is not None,
