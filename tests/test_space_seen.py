@@ -3,8 +3,10 @@
 import base64
 import csv
 import json
+import math
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -275,3 +277,15 @@ def test_commands_show_a_recording_in_space(tmp_path: Path) -> None:
     refused = inside("simulate", *asked.split(), "--over", "spread", "--out", str(kept))
     assert refused.returncode == 2
     assert "supports stay in space" in refused.stderr
+
+
+def test_a_film_is_told_with_what_it_shows_falsely(tmp_path: Path) -> None:
+    """Blocks in each other, by a share of the smallest, and energy from nowhere."""
+    kept, out = tmp_path / "fall.npz", tmp_path / "fall.gif"
+    run = replace(tipping(), quality=Quality(penetration=0.1, gain=0.02))
+    run.save(kept)
+    done = inside("render", str(kept), "--height", "180", "--slow", "1", "--out", str(out))
+    assert done.returncode == 0, done.stderr
+    width = math.cbrt(1.0 * 0.6 * 0.3) / run.problem.assembly.size
+    assert f"blocks overlap by {0.1 / width:.1%} of the smallest" in done.stdout
+    assert "energy rose above that at the release by 2.00%" in done.stdout

@@ -40,6 +40,8 @@ MOST_NUMBERS = 5_000_000
 """Most numbers of the poses that are written as a model or a table."""
 ROUGH = 1e-4
 """Residual of contacts in space that is told."""
+DEEP, GAINED = 0.01, 1e-3
+"""Overlap over the width of the smallest block, and energy over what fell, that are told."""
 MODELS, TABLES = ("glb", "gltf"), ("csv", "json")
 """Endings of recordings as glTF, and as numbers."""
 
@@ -159,6 +161,10 @@ def film(out: Path, shown: Sequence[Recording[Any]], how: Filmed) -> None:
             say(f"Coulomb's law was kept to {left:.1g} of the forces, where it was worst")
         if recording.unsolved:
             say(unsolved_words(recording))
+        if (deep := recording.overlap_share or 0.0) > DEEP:
+            say(f"blocks overlap by {deep:.1%} of the smallest, where it is worst")
+        if (gain := recording.quality.gain or 0.0) > GAINED:
+            say(f"energy rose above that at the release by {gain:.2%} of what fell")
         if not moves:
             say(_motionless(recording))
 
