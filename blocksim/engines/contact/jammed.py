@@ -20,7 +20,7 @@ from blocksim.engines.contact.folds import FIRST, Path, Point
 from blocksim.engines.contact.interior import YIELD
 from blocksim.engines.contact.step import Answer, Step
 
-CLOSE, CLOSEST, SHORT = 1e-14, 1e-17, 1e-3
+CLOSE, CLOSEST, SHORT = 1e-14, 1e-16, 1e-3
 """Product from which it ends where steps shorten to the last, as round-off is all that is left;
 and product at which it ends: the residual is about the root of that."""
 ROUND_OFF = 1e-15
