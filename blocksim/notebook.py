@@ -12,7 +12,6 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
-from io import BytesIO
 from typing import TYPE_CHECKING, Any, cast
 
 from blocksim.arch.answers import ArchBracket
@@ -96,11 +95,9 @@ def svg_of(shown: object) -> str:
 
     The last one is kept: a notebook asks for it alone and within the page.
     """
-    from blocksim.view.drawing import save_figure
+    from blocksim.view.drawing import figure_bytes
 
-    file = BytesIO()
-    save_figure(figure_of(shown), file, "svg")
-    text = file.getvalue().decode()
+    text = figure_bytes(figure_of(shown)).decode()
     # Without the prologue, which has no place within a page.
     return text[text.index("<svg") :]
 

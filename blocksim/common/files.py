@@ -59,6 +59,11 @@ def json_text(document: object, *, indent: int | None = None) -> str:
     return text.replace("\x7f", "\\u007f")
 
 
+def json_bytes(document: object) -> bytes:
+    """Return a document as the content of a JSON file for people to read."""
+    return f"{json_text(document, indent=1)}\n".encode()
+
+
 def _plain(value: object) -> object:
     if isinstance(value, float) and not math.isfinite(value):
         return str(float(value))

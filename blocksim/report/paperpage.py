@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from blocksim.common.files import AnyPath, make_folder, write_whole
+from blocksim.common.files import AnyPath, make_folder, write_folder
 from blocksim.common.progress import Progress, silent
 from blocksim.common.sheets import sheet_of
 from blocksim.common.version import __version__
 from blocksim.studies.paper import CONTENTS, FIGURES, Printed, numbers
-from blocksim.view.drawing import save_figure
+from blocksim.view.drawing import figure_bytes
 from blocksim.view.paper import paper_figure
 from blocksim.view.templates import template_of
 
@@ -32,25 +32,19 @@ def write_paper(
     Returns `paths`: The page first.
     Returns `worst`: Largest relative difference of a number from the printed one.
     """
-    folder = Path(folder)
     make_folder(folder)
     asked = sorted(set(figures or FIGURES))
-    paths = [folder / PAGE, folder / NUMBERS]
-    names: dict[int, str] = {}
+    drawn: dict[str, bytes] = {}
     for done, number in enumerate(asked):
         progress(done / len(asked), f"Fig. {number}")
-        figure = paper_figure(number)
-        names[number] = f"fig{number:02}.{kind}"
-        paths.append(folder / names[number])
-        write_whole(paths[-1], lambda file, figure=figure: save_figure(figure, file, kind))
+        drawn[f"fig{number:02}.{kind}"] = figure_bytes(paper_figure(number), kind)
     found = numbers()
-    write_whole(paths[1], lambda file: file.write(_sheet(found)))
     page = template_of("blocksim.report", "paper.html", "templates")
-    shown = [(number, names[number], CONTENTS[number]) for number in asked]
+    shown = [(at, name, CONTENTS[at]) for at, name in zip(asked, drawn, strict=True)]
     worst = max(each.difference for each in found)
     html = page.render(figures=shown, numbers=found, worst=worst, version=__version__)
-    write_whole(paths[0], lambda file: file.write(html.encode()))
-    return paths, worst
+    contents = {PAGE: html.encode(), NUMBERS: _sheet(found), **drawn}
+    return write_folder(folder, contents), worst
 
 
 def _sheet(found: Sequence[Printed]) -> bytes:

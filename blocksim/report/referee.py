@@ -11,8 +11,8 @@ from blocksim.common.checks import require
 from blocksim.common.dates import made_at
 from blocksim.common.files import (
     AnyPath,
+    json_bytes,
     json_of,
-    json_text,
     read_file,
     shipped_files,
     write_folder,
@@ -106,7 +106,7 @@ def write_score(score: Score, folder: AnyPath) -> list[Path]:
     rows = [list(asdict(row).values()) for row in score.rows]
     contents = {
         "score.html": score_page([record, *known_scores()]).encode(),
-        "score.json": f"{json_text(record, indent=1)}\n".encode(),
+        "score.json": json_bytes(record),
         "rows.csv": sheet_of(list(Row.__dataclass_fields__), rows),
     }
     return write_folder(folder, contents)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import re
 from collections import Counter
 from typing import Any
@@ -38,7 +37,7 @@ from blocksim.report.sheettables import (
     solid_reactions,
 )
 from blocksim.simulation.verdict import Verdict, reason_of
-from blocksim.view.drawing import save_figure, state_of_any, words_of
+from blocksim.view.drawing import figure_bytes, state_of_any, words_of
 from blocksim.view.sheet import Sheet, Titles, answer_sheet
 from blocksim.view.sheetfigure import sheet_figure
 from blocksim.view.solidfigure import solid_figure
@@ -145,10 +144,8 @@ def _drawn(sheet: Sheet, answer: Check[Any], falling: Check[Any]) -> dict[str, o
             pictures["pressures"] = lower
     colours: dict[str, str] = {}
     for name, figure in pictures.items():
-        file = io.BytesIO()
-        save_figure(figure, file, "svg")
         anchor = "sheet" if name == "picture" else name
-        drawn[name], dark = inline_picture(file.getvalue(), "sheet", "img", anchor)
+        drawn[name], dark = inline_picture(figure_bytes(figure), "sheet", "img", anchor)
         colours |= dark
     return {**drawn, "colours": colours}
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 import platform
 from collections.abc import Sequence
@@ -14,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import blocksim
 from blocksim.ask.methods import METHODS
 from blocksim.common.errors import InputError
-from blocksim.common.files import AnyPath, json_of, json_text, read_file, write_folder
+from blocksim.common.files import AnyPath, json_bytes, json_of, read_file, write_folder
 from blocksim.common.sheets import sheet_of
 from blocksim.common.tables import as_said
 from blocksim.common.words import printable
@@ -27,7 +26,7 @@ from blocksim.studies.questions import NEAR, SLOWLY
 from blocksim.studies.refinement import REFINEMENTS
 from blocksim.studies.thickness import ASIDE, ERROR_BOUND
 from blocksim.view.chartfigure import chart_figures
-from blocksim.view.drawing import save_figure
+from blocksim.view.drawing import figure_bytes
 from blocksim.view.mapfigure import MapPoint, map_figure
 
 if TYPE_CHECKING:
@@ -105,7 +104,7 @@ def write_results(
     page = report_page(found, drawn["map.svg"], machine(), unasked)
     contents = {
         PAGE: page.encode(),
-        "validate.json": as_json(document),
+        "validate.json": json_bytes(document),
         "validate.csv": _sheet(records),
     }
     return write_folder(folder, {**contents, **drawn})
@@ -117,19 +116,9 @@ def _sheet(records: Sequence[dict[str, object]]) -> bytes:
     return sheet_of(columns, (list(each.values()) for each in records))
 
 
-def as_json(document: object) -> bytes:
-    """Return a JSON document as the content of a file."""
-    return f"{json_text(document, indent=1)}\n".encode()
-
-
 def pictures(name: str, figure: Figure) -> dict[str, bytes]:
     """Return a figure as the contents of a .png and an .svg file of that name."""
-    drawn: dict[str, bytes] = {}
-    for kind in ("png", "svg"):
-        file = io.BytesIO()
-        save_figure(figure, file, kind)
-        drawn[f"{name}.{kind}"] = file.getvalue()
-    return drawn
+    return {f"{name}.{kind}": figure_bytes(figure, kind) for kind in ("png", "svg")}
 
 
 def _points(rows: Sequence[Row]) -> list[MapPoint]:
@@ -194,7 +183,7 @@ def _document(points: Sequence[Point]) -> bytes:
         "knobs": knobs,
         "points": records,
     }
-    return as_json(document)
+    return json_bytes(document)
 
 
 def read_points(path: AnyPath) -> list[Point]:

@@ -12,7 +12,7 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.common.checks import require
 from blocksim.common.errors import perhaps
-from blocksim.common.files import AnyPath, json_text, make_folder, shipped_files, write_whole
+from blocksim.common.files import AnyPath, json_bytes, make_folder, shipped_files, write_whole
 from blocksim.suite.families import LEVELS, Question, families
 from blocksim.suite.scene import Body, Scene
 from blocksim.suite.timed import Motion, motions
@@ -141,7 +141,7 @@ def _text(root: Xml.Element) -> bytes:
 
 
 WRITERS: dict[str, tuple[str, Callable[[Scene], bytes | None]]] = {
-    "scenes": ("json", lambda scene: json_text(scene.record(), indent=1).encode() + b"\n"),
+    "scenes": ("json", lambda scene: json_bytes(scene.record())),
     "mjcf": ("xml", mjcf),
     "sdf": ("sdf", sdf),
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Sequence
 from typing import Any, BinaryIO
@@ -41,6 +42,13 @@ def save_figure(
     dots = DOTS if height is None else height * (1 + 1e-12) / figure.get_figheight()
     with mpl.rc_context(FONT):
         figure.savefig(file, format=kind, dpi=dots, metadata=metadata)
+
+
+def figure_bytes(figure: Figure, kind: str = "svg") -> bytes:
+    """Return what `save_figure` writes."""
+    file = io.BytesIO()
+    save_figure(figure, file, kind)
+    return file.getvalue()
 
 
 def state_of_any(state: JointState) -> JointState:
