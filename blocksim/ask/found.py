@@ -25,11 +25,11 @@ from blocksim.ask.undecided import closing_of_value
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import require
 from blocksim.engines import get_engine
-from blocksim.kinds.offers import Threshold
 from blocksim.simulation.verdict import Evidence, aside
 
 if TYPE_CHECKING:
     from blocksim.engines.base import Method
+    from blocksim.kinds.archoffers import Thinning
     from blocksim.simulation.observation import Held
     from blocksim.simulation.simulated import Reduced
 
@@ -48,7 +48,7 @@ class Found(NamedTuple):
     told: dict[str, Any]
 
 
-def by_threshold(problem: Problem, over: str, threshold: Threshold, given: Taken) -> Found:
+def by_threshold(problem: Problem, over: str, threshold: Thinning, given: Taken) -> Found:
     """Search over a ratio of which the maker knows more."""
     chosen = choose(
         given.method, given.tol, problem=problem, settings=given.settings, reduce=given.reduce

@@ -16,7 +16,7 @@ from blocksim.arch.modes import Mode, observed_mode
 from blocksim.arch.theory import Critical
 from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
 from blocksim.blocks.problem import Problem
-from blocksim.kinds.offers import Offers, Static, Threshold
+from blocksim.kinds.offers import Offers, Static
 from blocksim.limit.carried import Carried
 from blocksim.limit.exact import Exact
 from blocksim.limit.proof import Proof, proof_of_fall, proof_of_rest
@@ -118,7 +118,7 @@ class ArchOffers(Offers):
 
         return Reduction.of(self.arch, self.problem.mu, self.problem.assembly)
 
-    def threshold(self, over: str) -> Threshold | None:
+    def threshold(self, over: str) -> Thinning | None:
         """Return what is known of the least thickness."""
         return Thinning(self) if over == "thickness" else None
 
@@ -137,10 +137,18 @@ class ArchOffers(Offers):
         }
 
 
-class Thinning(Threshold):
-    """The least thickness of an arch, over its radius.
+class Thinning:
+    """What is known of the thickness from which on an arch stands.
 
-    Ratios are tried on arches with a radius of 1 m: size and density say nothing of them.
+    The search is over its ratio to the radius, which `value` turns into the thickness. Ratios
+    are tried on arches with a radius of 1 m: size and density say nothing of them.
+
+    `name`, `low`, `high`: Of the ratio, and its range.
+    `unit`: Of the thickness.
+    `start`: Where a search begins.
+    `exact`: The least ratio by statics; 0 where all stand, None where none does.
+    `blocks`: How many there are.
+    `reduced_by`: What a reduction does, in words.
     """
 
     name, unit = "eta", "m"
@@ -182,7 +190,7 @@ class Thinning(Threshold):
         return Reduction.of(built, self._offers.problem.mu)
 
     def static(self, method: str) -> tuple[float | None, float | None, str]:
-        """Return the least ratio twice, and what it rests on."""
+        """Return the largest ratio that falls, the least that stands, and what tells it."""
         if method == "theory":
             least = self._offers.continuous.eta
             return (
@@ -203,7 +211,11 @@ class Thinning(Threshold):
         method: str,
         seen: Observation | None = None,
     ) -> ArchBracket:
-        """Return ratios, modes, thrust and hinges."""
+        """Return ratios, modes, thrust and hinges.
+
+        `low`, `high`: Ratios that fell and that stood.
+        `seen`: What an engine showed of the one that fell.
+        """
         known, angle = self._offers.known, self._arch.half_angle
         if method == "theory":
             least = self._offers.continuous

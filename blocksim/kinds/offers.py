@@ -14,10 +14,9 @@ from blocksim.simulation.simulated import Reduced
 from blocksim.simulation.verdict import Evidence, Verdict
 
 if TYPE_CHECKING:
-    from blocksim.blocks.problem import Problem
+    from blocksim.kinds.archoffers import Thinning
     from blocksim.limit.exact import Exact
     from blocksim.limit.proof import Proof
-    from blocksim.simulation.observation import Observation
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,62 +31,6 @@ class Static:
     evidence: Evidence
     joints: tuple[ObservedJoint, ...]
     mode: Any = None
-
-
-class Threshold:
-    """What is known of the value of a parameter from which on blocks stand.
-
-    The search is over a number of the maker's own, a ratio, which `value` turns into the
-    parameter.
-
-    `name`: Of the number.
-    `low`, `high`: Its range.
-    `start`: Where a search begins.
-    `exact`: Its value by statics; 0 where all values stand, None where none does.
-    `unit`: Of the parameter.
-    `blocks`: How many there are.
-    `reduced_by`: What a reduction does, in words.
-    """
-
-    name: str
-    low: float
-    high: float
-    start: float
-    exact: float | None
-    unit: str
-    blocks: int
-    reduced_by: str
-
-    def problem(self, value: float) -> Problem:
-        """Return the problem at a value of the number."""
-        raise NotImplementedError
-
-    def value(self, number: float | None) -> float | None:
-        """Return the parameter at a value of the number."""
-        raise NotImplementedError
-
-    def reduction(self, value: float, last: Reduced | None) -> Reduced | None:
-        """Return fewer blocks to simulate, from those of the value before."""
-        raise NotImplementedError
-
-    def static(self, method: str) -> tuple[float | None, float | None, str]:
-        """Return the largest number that falls, the least that stands, and what tells it."""
-        raise NotImplementedError
-
-    def facts(
-        self,
-        *,
-        low: float | None,
-        high: float | None,
-        method: str,
-        seen: Observation | None = None,
-    ) -> Any:
-        """Return what the maker adds to the answer.
-
-        `low`, `high`: Numbers that fell and that stood.
-        `seen`: What an engine showed of the one that fell.
-        """
-        raise NotImplementedError
 
 
 class Offers:
@@ -113,7 +56,7 @@ class Offers:
     def reduction(self) -> Reduced | None:
         """Return fewer blocks to simulate."""
 
-    def threshold(self, over: str) -> Threshold | None:
+    def threshold(self, over: str) -> Thinning | None:
         """Return what is known of the value of a parameter from which on blocks stand."""
 
     def facts(self, **found: Any) -> Any:

@@ -89,11 +89,6 @@ class JointPoints:
         entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
         return sparse.csc_matrix(entries, shape=shape)
 
-    @property
-    def live(self) -> Array:
-        """Live loads at a factor of 1, (6 blocks,)."""
-        return self.problem.live_forces.ravel()
-
     @cached_property
     def rows(self) -> Array:
         """Scale of each equation, (6 blocks,): a block's weight, and that times its size."""
