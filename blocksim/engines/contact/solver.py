@@ -11,14 +11,14 @@ as much as the number of blocks.
 What each contact does is guessed, and mended until all forces and velocities agree with it
 (`active_set.py`). Guesses are taken in turn, until one leads to a solution:
 
-- what the contacts did in the last step;
+- what the contacts did in the last step, then the end of a short path from there
+  (`path_following.py`), of friction that is not steep;
 - from nothing, the solution for friction that dilates, to half of its digits (`interior.py`),
   then to the last (`associated.py`): of the two answers that Coulomb's may have, rest and
   motion, that is rest if there is any;
 - the end of an interior-point method for Coulomb friction, steep one less;
-- of friction that is not steep, in motion the end of a short path from the last step
-  (`path_following.py`), then that of one that goes around its folds (`jammed.py`), and of a
-  short one from there; from nothing short paths, and what springs make of
+- of friction that is not steep, in motion the end of a path that goes around its folds
+  (`jammed.py`), and a short one from there; from nothing short paths, and what springs make of
   the way of alternating directions (`alternating.py`);
 - the end of a path from all contacts apart (`path_following.py`): from nothing, and of steep
   friction, then with the forces found so far first.
@@ -211,11 +211,11 @@ class ContactProblem:
         if step.friction.some_steep:
             yield _at_rest(step, guess)
         yield guess
+        # Where friction allows both, what rests stays: other methods may let it move.
+        yield path_from_guess(step, guess, LAST_PIECES)
         for tame in _tamed(step):
             if not tried.is_enough:
                 yield _coulomb(tame, CAREFUL[2], moves=True)
-        if not tried.is_enough:
-            yield path_from_guess(step, guess, LAST_PIECES)
         if not step.friction.some_steep and not tried.is_enough:
             yield (found := around_folds(step))
             yield path_from_guess(step, found, LAST_PIECES)
