@@ -263,6 +263,7 @@ def test_commands_show_a_recording_in_space(tmp_path: Path) -> None:
     done = inside("simulate", *asked.split(), "--out", str(kept))
     assert done.returncode == 0, done.stderr
     run = blocksim.load_recording(kept)
+    assert f"L = {run.problem.assembly.size:g} m" in done.stdout
     for kind in ("csv", "json", "png", "glb"):
         out = tmp_path / f"fall.{kind}"
         done = inside("render", str(kept), "--out", str(out))

@@ -36,6 +36,7 @@ from blocksim.cli.subject import Subject, anything_asked, arch_of
 from blocksim.common.checks import Range, require
 from blocksim.common.files import require_place
 from blocksim.engines import NAMES
+from blocksim.report.problems import length_lines
 from blocksim.report.recordings import recording_lines
 from blocksim.simulation.recording import Recording
 
@@ -73,7 +74,7 @@ def simulate(
             )
     recording.save(out)
     first, *others = recording_lines(recording, size)
-    say(f"{out}: {first}", *others)
+    say(f"{out}: {first}", *others, *length_lines(problem))
 
 
 def _spread(

@@ -32,7 +32,7 @@ PRESSED = 1e-4
 Let go, blocks go on in steps that suit such springs: softer ones ask for fewer."""
 BREAKING = 0.1
 """Bullet's breaking threshold, in units of a box."""
-MERGED = 0.1
+MERGED = 0.02
 """Distance at which points of hulls replace each other, over the thickness of the thinnest
 block. With more the deepest of them are lost: thin blocks went into each other."""
 DIAGONAL = np.ones(3) / math.sqrt(3.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import blocksim
 from blocksim.view.models import mechanism_model
@@ -15,6 +15,7 @@ from blocksim.view.templates import template_of
 
 if TYPE_CHECKING:
     from blocksim.ask.check import Check
+    from blocksim.blocks.problem import Problem
     from blocksim.blocks.space.assembly import SpatialAssembly
 
 VIEWER = Path(__file__).parent / "model-viewer.min.js"
@@ -24,7 +25,7 @@ VERSION = "4.4.0"
 
 def turning_page(answer: Check[SpatialAssembly]) -> str:
     """Return the page as HTML, complete in itself."""
-    problem = answer.problem
+    problem: Problem[Any] = answer.problem
     return template_of("blocksim.view.turning", "page.html").render(
         title=title_of(problem),
         verdict=f"{answer.verdict.value}, by {answer.method}",
