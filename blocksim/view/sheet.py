@@ -222,7 +222,7 @@ def _range_words(least: float, greatest: float, unit: ForceUnit) -> str:
     return f"thrust {unit.number(least)} to {unit.words(greatest)}"
 
 
-def title_of(problem: Problem) -> str:
+def title_of(problem: Problem[Any]) -> str:
     """Return the title of a problem, or say what it is."""
     if problem.title and problem.title != (problem.maker and problem.maker.name):
         return printable(problem.title)
@@ -233,7 +233,7 @@ def title_of(problem: Problem) -> str:
     return "Structure of blocks"
 
 
-def built_words(problem: Problem) -> list[str]:
+def built_words(problem: Problem[Any]) -> list[str]:
     """Say of what it is built, and what acts on it."""
     noun = "voussoir" if problem.is_arch else "block"
     words = [*problem.measures, counted(len(problem.assembly.blocks), noun)]
