@@ -76,6 +76,17 @@ def test_a_heap_is_followed_to_its_end(engine: str, number: int) -> None:
     assert row["thrown"] == 0.0
 
 
+def test_stones_that_friction_lets_stay_do_while_another_falls() -> None:
+    """Of 42 one slides off. Friction allows forces with which 16 of the others move, too."""
+    problem = rubble.drawn(rubble.Case(10, "heap"))
+    world = Blocks(problem, DIRECT.rule(problem.assembly))
+    world.hold(1)
+    world.advance(4)
+    moving = np.abs(world.velocities).max(axis=1) > 1e-9
+    assert moving.sum() == 1
+    assert world.quality().residual < 1e-9
+
+
 def test_what_leaves_the_plane_falls_onto_the_ground() -> None:
     """An arch in gravity that leans out of its plane overturns, and lies on its side."""
     arch = Arch(half_angle=math.pi / 2, eta=0.3, voussoirs=5, depth=0.3)
