@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
-from typing import BinaryIO, Protocol
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,20 +35,6 @@ COLOURS, SAMPLES = 255, 9
 """Colours of a gif, and frames from which they are chosen."""
 DRAWN = (*JOINTS.values(), THRUST, INK, QUIET, PAPER, GROUND)
 """Colours that say something, whatever their share of a frame."""
-
-
-class Frames(Protocol):
-    """The frames of a film."""
-
-    width: int
-    height: int
-    rate: int
-    """Frames in a second."""
-    count: int
-
-    def frame(self, number: int) -> NDArray[np.uint8]:
-        """Draw a frame, shape (height, width, 4)."""
-        ...
 
 
 def render(
@@ -82,14 +68,14 @@ def render(
     return film
 
 
-def write_film(film: Frames, out: AnyPath, progress: Progress = silent) -> None:
+def write_film(film: Film, out: AnyPath, progress: Progress = silent) -> None:
     """Encode frames into an .mp4 or .gif, whole or not at all. Refuse too many of them."""
     _require_bounded(film, Path(out).suffix.removeprefix("."))
     write = _mp4 if Path(out).suffix == ".mp4" else _gif
     write_whole(out, lambda file: write(film, file, progress))
 
 
-def _require_bounded(film: Frames, kind: str) -> None:
+def _require_bounded(film: Film, kind: str) -> None:
     """Refuse a film that would take hours or fill the disk, before it is begun."""
     seconds, frame = film.count / film.rate, film.width * film.height
     long = f"at most {LONGEST:g} s long: less slow, or of a shorter recording"
@@ -101,7 +87,7 @@ def _require_bounded(film: Frames, kind: str) -> None:
     require(film.count <= most, "film", f"{film.count} frames", allowed)
 
 
-def _mp4(film: Frames, file: BinaryIO, progress: Progress) -> None:
+def _mp4(film: Film, file: BinaryIO, progress: Progress) -> None:
     if find_spec("av") is None:
         raise MissingPart("mp4", "pip install av, or film as .gif")
     import av
@@ -134,7 +120,7 @@ def _mp4(film: Frames, file: BinaryIO, progress: Progress) -> None:
         container.mux(stream.encode(None))
 
 
-def _palette(film: Frames) -> Image.Image:
+def _palette(film: Film) -> Image.Image:
     """Make one palette for all frames: lines are few pixels, so their colours are given."""
     given = list(dict.fromkeys(to_bytes(name) for name in DRAWN))
     numbers = np.unique(np.linspace(0, film.count - 1, SAMPLES).astype(int)).tolist()
@@ -153,7 +139,7 @@ def to_bytes(name: str) -> tuple[int, int, int]:
     return red, green, blue
 
 
-def _gif(film: Frames, file: BinaryIO, progress: Progress) -> None:
+def _gif(film: Film, file: BinaryIO, progress: Progress) -> None:
     palette = _palette(film)
 
     def frames() -> Iterator[Image.Image]:
