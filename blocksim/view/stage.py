@@ -268,11 +268,14 @@ class SolidStage(Timeline):
         low, high = moving_box(self.assembly) / size
         beyond = near * FARTHEST
         every = np.concatenate([self.corners_of(frame) for frame in self.shown]) @ UPRIGHT
-        every = np.clip(every, low - beyond, high + beyond)
-        ends = size * every.min(axis=0), size * every.max(axis=0)
-        self.supports = supports_of(self.assembly, *ends)
-        solid = [hull.corners / size for hull in self.supports]
-        self.swept: Array = np.concatenate([every, *solid]) @ UPRIGHT.T
+        near_by = np.clip(every, low - beyond, high + beyond)
+        # Supports are drawn below all blocks, and at first shown as far as blocks are.
+        self.supports, shown = (
+            supports_of(self.assembly, size * each.min(axis=0), size * each.max(axis=0))
+            for each in (every, near_by)
+        )
+        solid = [hull.corners / size for hull in shown]
+        self.swept: Array = np.concatenate([near_by, *solid]) @ UPRIGHT.T
         self.ground = float(self.swept[:, 1].min())
         self.middle = float(low[0] + high[0]) / 2
         self.depth = float(high[1] - low[1])
