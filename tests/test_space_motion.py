@@ -318,6 +318,29 @@ def test_blocks_that_hit_at_their_corners_hit_wherever_in_a_step_they_do(share: 
     assert stepping._velocities[0, 0] == pytest.approx(-taken, rel=0.18)
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_edges_meet_where_they_cross(seed: int) -> None:
+    """Of two cubes, turned by 45 degrees each: any of four parallel edges was taken."""
+    random = np.random.default_rng(seed)
+    solids = [Solid(parts=(GROUND,), fixed=True)]
+    solids += [Solid(parts=(box((x, 0, 0), (x + 1, 1, 1)),)) for x in (0, 2)]
+    stepping = SolidBlocks(problem_of(solids, 0.5), USUAL)
+    cube, built = 1 / stepping.bodies.problem.assembly.size, stepping._place
+    # Ridges along x and y cross above the centre of the lower cube, and 0.02 deep.
+    aside = random.uniform(-0.4, 0.4, 2) * cube
+    upper = np.array([*aside, (math.sqrt(2) - 0.02) * cube])
+    whole = Rotation.random(random_state=seed)
+    turns = [whole * Rotation.from_euler(axis, 45, degrees=True) for axis in "xy"]
+    centres, turned = built.centres.copy(), built.turns.copy()
+    high = np.array([0.0, 0, 9])
+    centres[:2] = [high, high + whole.apply(upper)]
+    turned[:2] = [each.as_matrix() for each in turns]
+    points = stepping._points(built._replace(centres=centres, turns=turned), 0.0).points
+    crossing = high + whole.apply([aside[0], 0, math.sqrt(0.5) * cube])
+    assert points.gaps == pytest.approx([-0.02 * cube])
+    assert np.linalg.norm(points.places - crossing) < 0.021 * cube
+
+
 def falling_tower() -> Problem[Any]:
     """A case that topples at once."""
     return structure_of(case("tower_113")["scene"])

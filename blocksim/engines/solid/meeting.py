@@ -152,8 +152,7 @@ def _by_edges(hulls: Hulls, pairs: Places, gaps: Array) -> tuple[Points, Flags]:
         )
         if not steep.any():
             continue
-        one, two = np.nonzero(steep)
-        normals = normals[one, two] / long[one, two, None]
+        normals = normals[steep] / long[steep, None]
         outwards = hulls.corners[b].mean(axis=0) - hulls.corners[a].mean(axis=0)
         normals *= np.where(normals @ outwards < 0, -1.0, 1.0)[:, None]
         apart = (normals @ hulls.corners[b].T).min(axis=1) - (normals @ hulls.corners[a].T).max(
@@ -162,7 +161,10 @@ def _by_edges(hulls: Hulls, pairs: Places, gaps: Array) -> tuple[Points, Flags]:
         best = int(apart.argmax())
         if apart[best] <= gaps[at]:
             continue
-        k, m = one[best], two[best]
+        # Edges that are parallel have the same normal: those that meet are outermost along it.
+        normal = normals[best]
+        k = (ours @ normal).min(axis=1).argmax()
+        m = (theirs @ normal).max(axis=1).argmin()
         place = _crossing(ours[k], theirs[m])
         if place is None:
             continue
@@ -174,7 +176,7 @@ def _by_edges(hulls: Hulls, pairs: Places, gaps: Array) -> tuple[Points, Flags]:
                 np.array([a]),
                 np.array([b]),
                 place[None],
-                normals[best][None],
+                normal[None],
                 apart[best : best + 1],
                 np.array([key * 2]),
             )
