@@ -42,6 +42,7 @@ from blocksim import (
 from blocksim.blocks.acting import with_push
 from blocksim.blocks.space.extruded import is_extruded
 from blocksim.blocks.space.polyhedron import frame
+from blocksim.common.errors import InputError
 from blocksim.common.fields import fields_of
 from blocksim.limit.space import can_rest, largest_load
 from blocksim.limit.space.cones import _left_over
@@ -562,6 +563,22 @@ def test_what_is_the_same_at_any_depth_is_told(name: str) -> None:
     """The straight arch that is loaded at its crown, a block, and boxes that reach out."""
     problem = structure_of(case(name)["scene"])
     assert is_extruded(problem) is (name in FLAT)
+
+
+OPENING = {"left": 0.5, "right": 0.7, "from_course": 1, "to_course": 3}
+
+
+def test_a_wall_with_an_opening_falls_in_space_as_in_the_plane() -> None:
+    """Without a return it is a prism."""
+    bricks = {"openings": [OPENING], "courses": 5, "friction": 0.6}
+    sizes = {"length": 1.6, "block_length": 0.4, "block_height": 0.15, "depth": 0.2}
+    flat = structure_of({"kind": "wall", **bricks, **sizes})
+    wall = structure_of({"kind": "return-wall", **bricks, "returned": 0})
+    assert len(wall.assembly.blocks) == len(flat.assembly.blocks)
+    plane, space = (blocksim.bracket(each, over="tilt").limit for each in (flat, wall))
+    assert space == pytest.approx(plane, rel=1e-8)
+    with pytest.raises(InputError, match=r"openings\[0\].right = 0.7: must be from left = 0.5"):
+        structure_of({"kind": "return-wall", **bricks, "bricks": 1})
 
 
 def test_prisms_say_that_the_plane_would_do_unless_they_lean_out_of_it() -> None:

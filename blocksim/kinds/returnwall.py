@@ -1,14 +1,16 @@
-"""Walls in running bond with a return, asked in space."""
+"""Walls in running bond with a return and openings, asked in space."""
 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from blocksim.blocks.maker import count, metres
+from blocksim.blocks.maker import Table, count, metres, parameter
 from blocksim.blocks.space.assembly import Solid
 from blocksim.blocks.space.maker import SolidMaker
+from blocksim.kinds.openings import ASKED, Opening, require_within, without
 from blocksim.kinds.solids import box, ground
 
 
@@ -20,13 +22,20 @@ class ReturnWall(SolidMaker):
     """
 
     name: ClassVar[str] = "return-wall"
-    about: ClassVar[str] = "a wall in running bond with a return"
+    about: ClassVar[str] = "a wall in running bond with a return and openings"
+    row_types: ClassVar[Mapping[str, type[Table]]] = {"openings": Opening}
 
     courses: int = count(6, "number of courses", high=200)
     bricks: int = count(4, "bricks of a course along the wall", high=200)
     returned: int = count(2, "bricks of a course along the return", low=0, high=200)
     width: float = metres(0.2, "width of a brick; its length is twice that")
     height: float = metres(0.15, "height of a brick")
+    openings: tuple[Opening, ...] = parameter((), ASKED, nested="tables")
+
+    def __post_init__(self) -> None:
+        """Check that openings lie in the wall along x."""
+        super().__post_init__()
+        require_within(self.openings, 2 * self.width * self.bricks, self.courses)
 
     def solids(self) -> tuple[Solid, ...]:
         """Make the ground and the bricks, course by course."""
@@ -35,8 +44,9 @@ class ReturnWall(SolidMaker):
         for course in range(self.courses):
             levels = course * self.height, (course + 1) * self.height
             odd = course % 2
-            cuts = self._cuts(self.bricks, odd)
-            for at, ends in enumerate(itertools.pairwise(cuts)):
+            bricks = list(itertools.pairwise(self._cuts(self.bricks, odd)))
+            bricks = without(bricks, self.openings, course + 1, 2 * self.width)
+            for at, ends in enumerate(bricks):
                 name = f"{course + 1}.{at + 1}"
                 solids.append(box(name, ends, (0.0, self.width), levels))
             if not self.returned:

@@ -11,19 +11,7 @@ from blocksim.blocks.made import Made
 from blocksim.blocks.maker import Maker, Table, count, metres, parameter
 from blocksim.common.checks import require
 from blocksim.kinds.blockwork import box, floor
-
-SLIVER = 1e-6
-"""Width of what is left of a block, over its length, that counts as nothing."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Opening(Table):
-    """A gap in a wall: blocks are cut at its sides, and those above it span it."""
-
-    left: float = metres(0.0, "its left side, from the wall's left end", low=-1e-9)
-    right: float = metres(1.0, "its right side")
-    from_course: int = count(1, "lowest course it cuts; 1 is on the ground")
-    to_course: int = count(1, "highest course it cuts")
+from blocksim.kinds.openings import ASKED, SLIVER, Opening, require_within, without
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,9 +33,7 @@ class Wall(Maker):
     first: float = parameter(
         1.0, "length of the first block of the lowest course, in block lengths", high=1.0
     )
-    openings: tuple[Opening, ...] = parameter(
-        (), "tables with left, right, from_course and to_course", nested="tables"
-    )
+    openings: tuple[Opening, ...] = parameter((), ASKED, nested="tables")
     depth: float = metres(1.0, "depth out of the plane")
 
     def __post_init__(self) -> None:
@@ -55,13 +41,7 @@ class Wall(Maker):
         super().__post_init__()
         blocks = self.length / self.block_length * self.courses
         require(blocks <= 1e5, "block_length", self.block_length, "longer: over 100000 blocks")
-        for at, gap in enumerate(self.openings):
-            field = f"openings[{at}]"
-            within = f"from left = {gap.left:g} to length = {self.length:g} m"
-            require(gap.left < gap.right <= self.length, f"{field}.right", gap.right, within)
-            above = f"a whole number from {gap.from_course} to {self.courses}"
-            ok = gap.from_course <= gap.to_course <= self.courses
-            require(ok, f"{field}.to_course", gap.to_course, above)
+        require_within(self.openings, self.length, self.courses)
 
     def made(self, density: float) -> Made:  # noqa: ARG002
         """Make a floor and the blocks, named by course and place; joints are found."""
@@ -83,13 +63,4 @@ class Wall(Maker):
             cuts.append(cut)
             number += 1
         found = list(zip(cuts, [*cuts[1:], self.length], strict=True))
-        for gap in self.openings:
-            if gap.from_course <= course <= gap.to_course:
-                left, right = max(0.0, gap.left), gap.right
-                pieces = [
-                    piece
-                    for start, end in found
-                    for piece in ((start, min(end, left)), (max(start, right), end))
-                ]
-                found = [(start, end) for start, end in pieces if end - start > sliver]
-        return found
+        return without(found, self.openings, course, self.block_length)

@@ -25,8 +25,9 @@ from blocksim.kinds.arcade import Arcade
 from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.column import Column
 from blocksim.kinds.files import load_structure
+from blocksim.kinds.openings import Opening
 from blocksim.kinds.portal import Portal
-from blocksim.kinds.wall import Opening, Wall
+from blocksim.kinds.wall import Wall
 from blocksim.view.mapshapes import ISO_DEGREES, LARGEST_MU, iso_line, map_shapes
 from blocksim.view.style import (
     FRICTION,
