@@ -158,8 +158,8 @@ class _World:
             self._rate = (found - self._looked) / (self._unseen * step)
         solids.update(self.poses())
         # Ground that shakes may pull anew at any moment.
-        gained = MOST_UNSEEN * step * max(self._assembly.displacement(self._rate), self._shaken)
-        way = step * (self._speed() + gained)
+        speed, rate = map(self._assembly.displacement, (found, self._rate))
+        way = step * (float(speed) + MOST_UNSEEN * step * max(float(rate), self._shaken))
         self._unseen = min(max(1, int(solids.left / (2 * max(way, LEAST_WAY)))), MOST_UNSEEN)
         self._looked, self._ahead = found, self._unseen
 

@@ -46,8 +46,8 @@ def overlap_and_slip_in_space(assembly: SpatialAssembly, poses: Array) -> tuple[
     before, after = assembly.sides
     turned = (turns[before].inv() * turns[after]).magnitude() * assembly.lesser_reach
     turned = turned[[len(each.points) < FACE for each in assembly.joints]]
-    gone = poses - np.hstack([assembly.centres / assembly.size, np.zeros((len(poses), 3))])
-    moves = np.abs(gap), slip, turned, BESIDE * assembly.displacement(gone)
+    gone = BESIDE * assembly.displacement(poses - assembly.built[:-1])
+    moves = np.abs(gap), slip, turned, gone
     moved = max(float(each.max(initial=0.0)) for each in moves)
     if not moved > 0:
         return 0.0, 0.0

@@ -84,7 +84,7 @@ class SolidBlocks:
         self._friction = FrictionBetween(problem, self.bodies.hulls)
         self._drawn = DrawnApart(self.bodies)
         self._body = body_of(self.bodies.hulls)
-        self._borne = Borne.nothing(self._points(self._place, 0.0)[0])
+        self._borne = Borne.nothing(self._points(self._place, 0.0).points)
         self._residual = self._penetration = 0.0
         self._given: Array | None = None
         self._quiet = QUIET
@@ -98,7 +98,7 @@ class SolidBlocks:
         Returns (blocks, 6).
         """
         found = solve(at_rest(self.bodies), self._given)
-        points = self._points(self._place, 0.0)[0]
+        points = self._points(self._place, 0.0).points
         self._borne = handed(found.forces, self._contacts, points, self._body)
         self._residual = max(self._residual, found.residual)
         rates = found.x.reshape(-1, 6) / self.bodies.root
@@ -265,13 +265,13 @@ class SolidBlocks:
         `there`: What meets where they are.
         """
         least, place, overlap = math.inf, self._place, 0.0
-        for _ in range(PUSHES):
+        for look in range(PUSHES):
             points, friction, sharp = there
             now = seen(self.bodies, points, self._place, self._place)
             deep = depth(now.gaps)
             if deep < least:
                 least, place, overlap = deep, self._place, sharp
-            if deep <= DEEP:
+            if deep <= DEEP or look == PUSHES - 1:
                 break
             drift = np.zeros((len(now.gaps), 3))
             drift[:, 0] = now.gaps / deep
