@@ -21,6 +21,7 @@ import numpy as np
 
 from analysis.command import run
 from analysis.rows import write_rows
+from analysis.saved_answers import Row, answers
 from blocksim import Verdict
 from blocksim.blocks.assembly import Array
 from blocksim.simulation.shaken import shake
@@ -59,52 +60,57 @@ def simulated(height: float, shape: str, duration: float, amplitude: float) -> b
     return seen.verdict is Verdict.COLLAPSES
 
 
-def asked(height: float, shape: str, count: int) -> list[dict[str, object]]:
-    """Ask the pulses of a grid of one block, by the equation and by `direct`: rows."""
-    rows: list[dict[str, object]] = []
-    durations, amplitudes = (each.tolist() for each in grid(height, count))
-    for amplitude, duration in itertools.product(amplitudes, durations):
-        truth, less, more = (
-            overturned(height, shape, duration, share * amplitude)
-            for share in (1.0, 1 - NEAR, 1 + NEAR)
-        )
-        rows.append(
-            {
-                "height_m": height,
-                "shape": shape,
-                "duration_s": round(duration, 6),
-                "amplitude_g": round(amplitude, 6),
-                "equation": truth,
-                "direct": simulated(height, shape, duration, amplitude),
-                "near": not truth == less == more,
-            }
-        )
-    return rows
+def asked(case: tuple[float, str, float, float]) -> Row:
+    """Ask the equation and `direct` about a height, shape, duration and amplitude."""
+    height, shape, duration, amplitude = case
+    started = time.process_time()
+    truth, less, more = (
+        overturned(height, shape, duration, share * amplitude)
+        for share in (1.0, 1 - NEAR, 1 + NEAR)
+    )
+    between = time.process_time()
+    return {
+        "height_m": height,
+        "shape": shape,
+        "duration_s": round(duration, 6),
+        "amplitude_g": round(amplitude, 6),
+        "equation": truth,
+        "direct": simulated(height, shape, duration, amplitude),
+        "near": not truth == less == more,
+        "equation_cpu_s": round(between - started, 3),
+        "direct_cpu_s": round(time.process_time() - between, 3),
+    }
 
 
-def main(out: Path, *, quick: bool = False, count: int = MANY) -> list[dict[str, object]]:
-    """Ask all pulses, write rows, and return how many differ for each block and shape."""
-    told: list[dict[str, object]] = []
-    rows: list[dict[str, object]] = []
-    for height, shape in itertools.product(HEIGHTS, SHAPES):
-        started = time.process_time()
-        found = asked(height, shape, FEW if quick else count)
-        rows += found
-        write_rows(out / "housner.csv.gz", rows)
-        differ = [each for each in found if each["direct"] != each["equation"]]
-        told.append(
-            {
-                "height_m": height,
-                "shape": shape,
-                "pulses": len(found),
-                "overturn": sum(each["equation"] is True for each in found),
-                "near_the_boundary": sum(each["near"] is True for each in found),
-                "differ": sum(not each["near"] for each in differ),
-                "differ_near": sum(each["near"] is True for each in differ),
-                "cpu_s": round(time.process_time() - started, 1),
-            }
-        )
-    return told
+def main(
+    out: Path, *, quick: bool = False, count: int = MANY, processes: int = 1
+) -> list[dict[str, object]]:
+    """Ask what is not yet on disk, write rows, and return how many differ for each block."""
+    cases = [
+        (height, shape, duration, amplitude)
+        for height, shape in itertools.product(HEIGHTS, SHAPES)
+        for durations, amplitudes in [grid(height, FEW if quick else count)]
+        for amplitude, duration in itertools.product(amplitudes.tolist(), durations.tolist())
+    ]
+    rows = answers(out / "housner.jsonl", cases, asked, processes)
+    write_rows(out / "housner.csv.gz", rows)
+    return [told(rows, *each) for each in itertools.product(HEIGHTS, SHAPES)]
+
+
+def told(rows: list[Row], height: float, shape: str) -> dict[str, object]:
+    """Count what differs for one block and one shape."""
+    found = [row for row in rows if (row["height_m"], row["shape"]) == (height, shape)]
+    differ = [row for row in found if row["direct"] != row["equation"]]
+    return {
+        "height_m": height,
+        "shape": shape,
+        "pulses": len(found),
+        "overturn": sum(row["equation"] is True for row in found),
+        "near_the_boundary": sum(row["near"] is True for row in found),
+        "differ": sum(not row["near"] for row in differ),
+        "differ_near": sum(row["near"] is True for row in differ),
+        "cpu_s": round(sum(float(row["direct_cpu_s"] or 0) for row in found), 1),
+    }
 
 
 if __name__ == "__main__":
