@@ -8,7 +8,7 @@ import pytest
 from worlds import DIRECT, Blocks, ground_level
 
 from analysis import rubble
-from blocksim import Arch, CircularArch, Recording, equilibrium, simulate
+from blocksim import Arch, CircularArch, Recording, equilibrium, simulate, structure_of
 from blocksim.engines.energy import Balance, energy
 from blocksim.engines.solids import obj_text, prism
 
@@ -123,6 +123,44 @@ def test_free_fall_keeps_its_energy_and_a_push_is_seen() -> None:
     gained = energy(problem, poses, pushed) - start
     assert balance.gain == pytest.approx(gained / fallen, rel=1e-9)
     assert balance.gain > 0.1
+
+
+def test_energy_that_rises_after_a_fall_is_a_gain() -> None:
+    """What has fallen and lies still is thrown up by less than it fell."""
+    problem = rubble.drawn(STACK)
+    count = len(problem.assembly.blocks)
+    first = np.column_stack([problem.assembly.centres / problem.assembly.size, np.zeros(count)])
+    still = np.zeros_like(first)
+    balance = Balance.of(problem, first)
+    fallen = first + 0.5 * np.array([*problem.gravity[:2], 0.0])
+    balance.look(fallen, still, still)
+    assert balance.gain == 0.0
+    thrown = still + np.array([0.0, 0.4, 0.0])
+    balance.look(fallen, thrown, thrown)
+    # By energy: 0.4^2 / 2 of the 0.5 that each fell.
+    assert balance.gain == pytest.approx(0.16, rel=1e-9)
+
+
+@pytest.mark.parametrize("method", ["direct", "pymunk"])
+def test_a_block_that_is_thrown_up_gains_nothing(method: str) -> None:
+    """The energy it begins with is its own."""
+    corners = [(0.0, 2.0), (1.0, 2.0), (1.0, 3.0), (0.0, 3.0)]
+    table = {
+        "friction": 0.6,
+        "blocks": [
+            {"id": "ground", "vertices": [(-2, -1), (4, -1), (4, 0), (-2, 0)], "fixed": True},
+            {
+                "id": "stone",
+                "vertices": corners,
+                "free": True,
+                "velocity": [0.5, 3.0],
+                "spin_deg_s": 45,
+            },
+        ],
+    }
+    gain = simulate(structure_of(table), method=method, duration=2.0).quality.gain
+    assert gain is not None
+    assert gain < 1e-9
 
 
 def test_a_prism_is_written_with_faces_outwards() -> None:

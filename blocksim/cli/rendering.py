@@ -164,7 +164,7 @@ def film(out: Path, shown: Sequence[Recording[Any]], how: Filmed) -> None:
         if (deep := recording.overlap_share or 0.0) > DEEP:
             say(f"blocks overlap by {deep:.1%} of the smallest, where it is worst")
         if (gain := recording.quality.gain or 0.0) > GAINED:
-            say(f"energy rose above that at the release by {gain:.2%} of what fell")
+            say(f"energy rose again, by {gain:.2%} of what fell")
         if not moves:
             say(_motionless(recording))
 

@@ -90,7 +90,8 @@ class Quality:
 
     `residual`: Worst imbalance, penetration rate or complementarity in any step [g].
     `penetration`: Deepest overlap of two blocks, in units of the size.
-    `gain`: Most by which the energy was above that at the release, as a share of what fell.
+    `gain`: Most by which the energy rose above the least it had been, as a share of what fell,
+        and of what moved at the release; None where the ground gives and takes it.
     `error`: How far corners were off by then, estimated [size]
         (`blocksim.simulation.repeating`).
     `late`: How early or late they went by a hundredth of the size, estimated [sqrt(size/g)];

@@ -178,6 +178,7 @@ class Blocks(Stepping):
     def push(self, velocities: Array) -> None:
         """Set the velocities, shape (blocks, 3)."""
         self._velocities = np.array(velocities, dtype=np.float64)
+        self._balance = Balance.of(self._asked, self._poses, self._velocities)
 
 
 ENGINE = Engine(

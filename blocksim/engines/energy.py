@@ -1,4 +1,4 @@
-"""Energy of blocks in motion, and how far it rises above that at the release.
+"""Energy of blocks in motion, and how far it rises above the least that it has been.
 
 Engines of impulses move blocks by velocities that are those halfway between two places.
 """
@@ -55,11 +55,14 @@ def _potential(problem: Problem, poses: Array) -> float:
 
 
 class Balance(Generic[Where]):
-    """How far the energy has risen above that at the release.
+    """How far the energy has risen above the least that it has been since the release.
+
+    Nothing gives energy to blocks that fall, slide and hit: each rise is the engine's.
 
     `potential`, `kinetic`: Energies: of where blocks are, and of that and their velocities.
     `poses`, (blocks, 3) float, or Place: Where blocks are at the release, as these
         functions are told it.
+    `begun`: Kinetic energy there.
     """
 
     def __init__(
@@ -67,19 +70,25 @@ class Balance(Generic[Where]):
         potential: Callable[[Where], float],
         kinetic: Callable[[Where, Array], float],
         poses: Where,
+        begun: float = 0.0,
     ) -> None:
         self._potential, self._kinetic = potential, kinetic
-        self._first = self._lowest = potential(poses)
+        self._lowest = potential(poses)
+        self._first = self._least = self._lowest + begun
         self._gain = 0.0
 
     @staticmethod
-    def of(problem: Problem, poses: Array) -> Balance[Array]:
-        """Look at the energies of a problem of the plane, from poses at the release on."""
+    def of(problem: Problem, poses: Array, velocities: Array | float = 0.0) -> Balance[Array]:
+        """Look at the energies of a problem of the plane, from poses at the release on.
+
+        `velocities`, (blocks, 3): Those at the release.
+        """
 
         def kinetic(_: Array, velocities: Array) -> float:
             return _kinetic(problem, velocities)
 
-        return Balance(partial(_potential, problem), kinetic, poses)
+        begun = _kinetic(problem, np.zeros_like(poses) + velocities)
+        return Balance(partial(_potential, problem), kinetic, poses, begun)
 
     def look(self, poses: Where, before: Array, after: Array) -> None:
         """Take note of blocks at a place, with their velocities on the way to it and from it.
@@ -88,11 +97,12 @@ class Balance(Generic[Where]):
         """
         still = self._potential(poses)
         moving = still + self._kinetic(poses, (before + after) / 2)
-        self._gain = max(self._gain, moving - self._first)
+        self._gain = max(self._gain, moving - self._least)
+        self._least = min(self._least, moving)
         self._lowest = min(self._lowest, still)
 
     @property
     def gain(self) -> float:
-        """Most the energy has been above that at the release, as a share of what has fallen."""
+        """Most the energy has risen, as a share of what fell and moved at the release."""
         fallen = self._first - self._lowest
         return self._gain / fallen if fallen > FELL else 0.0

@@ -222,6 +222,7 @@ class _World:
         """Set the velocities, shape (blocks, 3)."""
         space, part = self._space, self._settings.step / SHAKEN_PARTS
         poses = space.poses()
+        self._balance = Balance.of(self._problem, poses, velocities)
         space.set_velocities(velocities)
         self._go(part, self._settings.sweeps)
         gained = space.velocities() - velocities

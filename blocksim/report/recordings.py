@@ -207,10 +207,9 @@ def recording_lines(recording: Recording, unit: str) -> list[str]:
         )
     if kept.gain is not None:
         said.append(
-            "energy rose above that at the release by at most "
-            f"{100 * kept.gain:.1g} % of what fell"
+            f"energy rose again, by at most {100 * kept.gain:.1g} % of what fell"
             if kept.gain > ROUNDING
-            else "there was never more energy than at the release"
+            else "energy never rose"
         )
     if said:
         lines.append("  " + ", ".join(said))

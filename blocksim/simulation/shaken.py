@@ -189,8 +189,10 @@ def _once(
         if not whole and _sunk(poses) > SUNK:
             break
         progress(min(1.0, times[-1] / end), "shaking")
-    # What the ground does and blocks begin with is no gain of the engine.
-    quality = replace(world.quality(), gain=None)
+    quality = world.quality()
+    if problem.shaking is not None:
+        # What the ground does is no gain of the engine.
+        quality = replace(quality, gain=None)
     recording = simulation.record(times, poses, quality)
     verdict, what = outcome(recording)
     if not trusted(world, simulation.settings) and verdict is Verdict.STANDS:
