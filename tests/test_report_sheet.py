@@ -42,6 +42,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("pushed", (str(folder / "pushed.json"), "--method", "direct"), 0),
         ("wall", ("wall", "--mu", "0.6"), 0),
         ("road", (*ASKED, *FRICTION, "--fill", "0.5", "--point-load", "1", "20"), 0),
+        ("skew", ("skew_arch_crown", "--load", "5"), 0),
     ):
         ran("report", *asked, "--out", folder / f"{name}.html", code=code)
     return folder
@@ -228,6 +229,7 @@ MM = 96 / 25.4
     [
         "arch",
         "road",
+        "skew",
         *(pytest.param(each, marks=pytest.mark.long) for each in ("thin", "wall", "pushed")),
     ],
 )
@@ -235,9 +237,16 @@ def test_it_fits_the_paper(windows: Windows, pages: Path, name: str) -> None:
     page = windows.open((pages / f"{name}.html").as_uri(), round(PAPER[0] * MM), 900)
     page.emulate_media(media="print", color_scheme="dark")
     over = page.evaluate("""() => [...document.querySelectorAll("body *")].filter((each) =>
-      each.getBoundingClientRect().right > innerWidth + 1 && !each.closest("svg")
+      each.getBoundingClientRect().right > innerWidth + 1 && !each.parentElement.closest("svg")
       && !each.closest(".unseen")).length""")
     assert over == 0
+    # Parts of the page keep apart.
+    apart = page.evaluate("""() => {
+      const above = document.querySelector(".columns").previousElementSibling;
+      const edge = (each) => each.getBoundingClientRect();
+      return edge(document.querySelector(".columns h2")).top - edge(above).bottom;
+    }""")
+    assert apart > 1.5 * MM
     # The drawing is as wide as it says: its scale is true.
     box = page.locator("#drawing svg.sheet").bounding_box()
     assert box["width"] == pytest.approx(PAPER[0] * MM, abs=1.0)
