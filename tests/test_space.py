@@ -40,7 +40,7 @@ from blocksim import (
     structure_of,
 )
 from blocksim.blocks.acting import with_push
-from blocksim.blocks.space.extruded import is_extruded
+from blocksim.blocks.space.extruded import way_of_prisms
 from blocksim.blocks.space.polyhedron import frame
 from blocksim.common.errors import InputError
 from blocksim.common.fields import fields_of
@@ -562,7 +562,7 @@ FLAT = {"arch_15_skew_0_crown", "block_topples_0", "harmonic_4_in", "harmonic_4_
 def test_what_is_the_same_at_any_depth_is_told(name: str) -> None:
     """The straight arch that is loaded at its crown, a block, and boxes that reach out."""
     problem = structure_of(case(name)["scene"])
-    assert is_extruded(problem) is (name in FLAT)
+    assert (way_of_prisms(problem) is not None) is (name in FLAT)
 
 
 OPENING = {"left": 0.5, "right": 0.7, "from_course": 1, "to_course": 3}
@@ -586,17 +586,38 @@ def test_prisms_say_that_the_plane_would_do_unless_they_lean_out_of_it() -> None
     arch = blocksim.CircularArch(half_angle_deg=70, eta=0.2, friction=0.7, voussoirs=9)
     push = Load(force=np.array([1.0, 0.0, 0.0]), blocks=(4,), per_weight=True)
     flat = replace(extruded(arch.problem()), live=(push,))
-    words = "it is the same at any depth: the plane has the same answer"
+    words = "it is the same at any depth along y: the plane across has the same answer"
     assert words in blocksim.check(flat).reason
     assert words in blocksim.bracket(flat, over="load").reason
     assert words in blocksim.bracket(flat, over="tilt").reason
     leaning = replace(flat, gravity=np.array([0.0, 0.02, -1.0]))
     assert words not in blocksim.bracket(leaning, over="load").reason
-    assert is_extruded(replace(flat, gravity=np.array([0.1, 0.0, -1.0])))
-    assert not is_extruded(replace(flat, gravity=np.array([0.0, 0.1, -1.0])))
+    assert way_of_prisms(replace(flat, gravity=np.array([0.1, 0.0, -1.0]))) is not None
+    assert way_of_prisms(replace(flat, gravity=np.array([0.0, 0.1, -1.0]))) is None
     wall = replace(extruded(blocksim.Wall(friction=0.5).problem()), live=(push,))
     count = len(wall.assembly.blocks) + len(wall.assembly.supports)
-    assert is_extruded(rebuilt(wall, rotation(3), 2.0, list(range(count))))
+    turned = rebuilt(wall, rotation(3), 2.0, list(range(count)))
+    way = way_of_prisms(turned)
+    assert abs(way @ rotation(3)[:, 1]) == pytest.approx(1)
+    numbers = [float(each) for each in re.findall(r"-?[\d.]+", along(turned))]
+    assert numbers == pytest.approx(list(way), abs=5e-3)
+
+
+def along(problem: Any) -> str:
+    """Along what its depth is of no account, as it is told."""
+    return re.search(r"same at any depth along (.+?): ", blocksim.check(problem).reason)[1]
+
+
+@pytest.mark.parametrize(("azimuth", "told"), [(0, "y"), (90, "x")])
+def test_it_is_told_along_what_the_depth_is_of_no_account(azimuth: float, told: str) -> None:
+    """A column that topples out of its plane hangs on its depth there, not on its width."""
+    for width, depth in ((1.0, 0.5), (1.5, 0.5), (1.0, 0.6)):
+        made = blocksim.Column(friction=0.9, drums=2, drum_height=1, width=width, depth=depth)
+        table = replace(extruded(made.problem()), azimuth=math.radians(azimuth))
+        found = blocksim.bracket(table, over="tilt")
+        assert f"same at any depth along {told}: " in found.reason
+        across = width if told == "y" else depth
+        assert math.tan(math.radians(found.limit)) == pytest.approx(across / 2, rel=1e-6)
 
 
 def test_a_fall_that_is_proved_is_said_without_bound() -> None:

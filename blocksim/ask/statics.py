@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 VERDICTS = {True: Verdict.STANDS, False: Verdict.COLLAPSES, None: Verdict.UNDECIDED}
 """By whether forces of equilibrium exist."""
+ALONG = 1e-9
+"""What is along an axis differs from it by less."""
 
 
 def observed(problem: Problem[Any], rates: Array | None) -> tuple[ObservedJoint, ...]:
@@ -44,10 +46,6 @@ def unit(rates: Array, problem: Problem[Any]) -> Array:
     return rates / largest if largest > 0 else rates
 
 
-FLAT = "it is the same at any depth: the plane has the same answer"
-"""Of prisms in space."""
-
-
 def static_evidence(
     problem: Problem[Any], static: Equilibrium | SpatialEquilibrium
 ) -> tuple[Evidence, ...]:
@@ -60,12 +58,18 @@ def static_evidence(
 
 
 def flat_evidence(problem: Problem[Any]) -> tuple[Evidence, ...]:
-    """Say of prisms in space that the plane would do."""
+    """Say of prisms in space that the plane across them would do."""
     if not problem.in_space:
         return ()
-    from blocksim.blocks.space.extruded import is_extruded
+    from blocksim.blocks.space.extruded import way_of_prisms
 
-    return (Evidence("plane", FLAT),) if is_extruded(problem) else ()
+    way = way_of_prisms(problem)
+    if way is None:
+        return ()
+    axes = [axis for axis, share in zip("xyz", way, strict=True) if abs(share) > 1 - ALONG]
+    along = axes[0] if axes else f"({', '.join(f'{share:.3g}' for share in way + 0.0)})"
+    words = f"it is the same at any depth along {along}: the plane across has the same answer"
+    return (Evidence("plane", words),)
 
 
 def fewer(problem: Problem[Any], static: Equilibrium | SpatialEquilibrium) -> int | None:

@@ -89,14 +89,15 @@ def prism(polygon: Array, depth: float) -> Polyhedron:
     return Polyhedron(np.concatenate([_at(polygon, -depth / 2), _at(polygon, depth / 2)]))
 
 
-def is_extruded(problem: Problem[SpatialAssembly]) -> bool:
-    """Tell whether a problem in space is one of the plane: the same at any depth, as loads are.
+def way_of_prisms(problem: Problem[SpatialAssembly]) -> Array | None:
+    """Return the direction along which a problem in space is one of the plane, (3,), if any.
 
     Blocks are prisms as deep as each other, side by side, touch over the whole depth, and
-    what acts on them acts across, through the middle.
+    what acts on them acts across, through the middle. So the depth that way is of no account.
     """
     first = problem.assembly.blocks[0].hulls[0].faces
-    return any(_is_along(problem, face.normal) for face in first)
+    ways = (face.normal for face in first)
+    return next((way for way in ways if _is_along(problem, way)), None)
 
 
 def _is_along(problem: Problem[SpatialAssembly], way: Array) -> bool:
