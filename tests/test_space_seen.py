@@ -13,6 +13,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import to_rgba
+from matplotlib.text import Text
 from recorded import accessor, parts_of
 from running import inside
 from scipy.spatial.transform import Rotation
@@ -25,8 +28,9 @@ from blocksim.blocks.record import to_record
 from blocksim.report.sheetpage import structure_page
 from blocksim.view.film import Film
 from blocksim.view.models import UPRIGHT, mechanism_model, write_model
+from blocksim.view.solidfigure import FOOT, HEAD, TALL, WIDE, solid_figure
 from blocksim.view.solidscene import force_lines, states_at
-from blocksim.view.style import JOINTS
+from blocksim.view.style import JOINTS, LIVE
 from blocksim.view.turning import turning_page
 from blocksim.view.video import to_bytes
 
@@ -109,6 +113,56 @@ def test_forces_are_drawn_where_they_balance_the_weights() -> None:
         above = [each for each in (joint.before, joint.after) if each >= 0]
         borne = answer.problem.assembly.centres[max(above) :].mean(axis=0)
         assert line.mean(axis=0)[:2] == pytest.approx(borne[:2], abs=1e-6)
+
+
+def arrow_in(figure: Any) -> np.ndarray:
+    """What has the colour of live loads, from the tail on, without the legend [pixels]."""
+    of_loads = to_rgba(LIVE)
+    found = []
+    for drawn in figure.findobj(PolyCollection):
+        edges, fills = drawn.get_edgecolors(), drawn.get_facecolors()
+        for path, edge, fill in zip(drawn.get_paths(), edges, fills, strict=True):
+            if tuple(edge) == of_loads or tuple(fill) == of_loads:
+                found += path.vertices.tolist()
+    return np.array([each for each in found if each[1] > FOOT])
+
+
+def test_a_picture_shows_what_acts_on_blocks_and_all_of_it() -> None:
+    """A load on the top of a tower points down to where it acts; a push points across."""
+    bare = tower()
+    assembly = bare.assembly
+    top = assembly.centres[2] + [0, 0, 0.5 * np.ptp(assembly.blocks[2].hulls[0].corners[:, 2])]
+    load = blocksim.Load(force=np.array([0.0, 0.0, -3.0]), blocks=(2,), point=top)
+    loaded = replace(bare, live=(load,), load=1.0)
+    assert arrow_in(solid_figure(blocksim.check(bare))).size == 0
+    figure = solid_figure(blocksim.check(loaded))
+    seen = arrow_in(figure)
+    assert len(seen) > 4
+    assert "live load" in {each.get_text() for each in figure.findobj(Text)}
+    # The camera looks down on it: upright stays upright, and lines meet below.
+    (x, high), (tip, low) = seen[0], seen[seen[:, 1].argmin()]
+    assert high - low > 30
+    assert abs(x - tip) < 0.05 * (high - low)
+    assert seen[:, 1].max() <= TALL - HEAD
+    # It is seen from -60 degrees.
+    for azimuth, way in ((30, (1, 0)), (120, (0, 1)), (-150, (-1, 0)), (-60, (0, -1))):
+        push = np.array([math.cos(math.radians(azimuth)), math.sin(math.radians(azimuth)), 0])
+        act = blocksim.Load(force=push, blocks=(0, 1, 2), per_weight=True)
+        pushed = replace(bare, live=(act,), load=0.15)
+        figure = solid_figure(blocksim.check(pushed))
+        assert "push 0.15 g" in {each.get_text() for each in figure.findobj(Text)}
+        seen = arrow_in(figure)
+        along = seen[seen.dot(way).argmax()] - seen[0]
+        assert along @ way > 0.9 * np.hypot(*along) > 0
+        assert (seen.max(axis=0) < [WIDE, TALL - HEAD]).all()
+    both = replace(bare, live=(act, replace(act, force=push[[1, 0, 2]])), load=0.15)
+    words = solid_figure(blocksim.check(both)).findobj(lambda each: "push" in text_of(each))
+    assert len(words) == 2
+    assert abs(np.diff([each.get_position()[1] for each in words])) > words[0].get_fontsize()
+
+
+def text_of(drawn: Any) -> str:
+    return drawn.get_text() if isinstance(drawn, Text) else ""
 
 
 def test_a_model_moves_blocks_as_the_recording_does(tmp_path: Path) -> None:

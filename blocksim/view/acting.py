@@ -50,6 +50,10 @@ class Acting:
         problem = stage.recording.problem
         self._pushes, self._loads = _pushes(problem), _resultants(problem)
         self._largest = max((float(np.linalg.norm(f)) for *_, f in self._loads), default=0.0)
+        long = LONGEST * panel.height * (1.0 if len(self._loads) <= FEW else SHORT)
+        # As built, all arrows begin within the panel.
+        lines = (ends for _, ends in self._arrows(stage.at(0.0), long))
+        self._long = long * min((_within(panel, *each) for each in lines), default=1.0)
 
     @property
     def _held(self) -> list[tuple[int, Array]]:
@@ -67,14 +71,17 @@ class Acting:
     def shapes(self, moment: Any) -> list[Shape]:
         """Draw the loads where they act, on blocks as they are."""
         drawn: list[Shape] = []
-        long = LONGEST * self._panel.height * (1.0 if len(self._loads) <= FEW else SHORT)
+        for kind, (tail, tip) in self._arrows(moment, self._long):
+            drawn += arrow(tail, tip, colour(LIVE if kind == "live" else DEAD), self._size)
+        return drawn
+
+    def _arrows(self, moment: Any, long: float) -> Iterator[tuple[str, tuple[Array, Array]]]:
+        """Give the kind of each load, and its tail and tip, the largest so long [pixels]."""
         for kind, block, arm, force in self._loads:
             place = self._stage.point_at(moment, block, arm)
             share = force / self._largest
             tip, way = self._view.places(place), direction(self._view, place, share)
-            tail = tip - long * float(np.linalg.norm(share)) * way
-            drawn += arrow(tail, tip, colour(LIVE if kind == "live" else DEAD), self._size)
-        return drawn
+            yield kind, (tip - long * float(np.linalg.norm(share)) * way, tip)
 
     def thrust(self, moment: Any) -> list[Shape]:
         """Draw the line of thrust, on the near face, while all is at rest."""
@@ -117,8 +124,9 @@ class Acting:
             shapes += self._marks(problem.shaking, seconds, share)
         if (moved := self._moved(moment)) is not None:
             labels.append(self._corner(f"supports moved {abs(1e3 * moved):.1f} mm"))
-        for kind, share_of_weight in self._pushes:
-            label = self._corner(f"push {np.linalg.norm(share_of_weight):.3g} g")
+        below = 0 if moved is None else 1
+        for row, (kind, share_of_weight) in enumerate(self._pushes, start=below):
+            label = self._corner(f"push {np.linalg.norm(share_of_weight):.3g} g", row)
             labels.append(label)
             way = PUSH * size * direction(self._view, np.zeros(3), share_of_weight)
             middle = np.array([label.x - (PUSH / 2 + 14) * size, label.y + 5 * size])
@@ -126,12 +134,16 @@ class Acting:
             shapes += arrow(middle - way / 2, middle + way / 2, tone, size)
         return shapes, labels
 
-    def _corner(self, words: str) -> Label:
-        """Place words in the upper right corner, below the inset of ground that shakes."""
+    def _corner(self, words: str, row: int = 0) -> Label:
+        """Place words in the upper right corner, below the inset of ground that shakes.
+
+        `row`: How many such words are above.
+        """
         size, panel = self._size, self._panel
         x = panel.x + panel.width - 24 * size - width_of(words, 16 * size, bold=True)
         inset = 0.0 if self._stage.recording.problem.shaking is None else (TALL + 66) * size
-        y = panel.y + panel.height - 24 * size - inset
+        # An arrow as high as it may be stands beside it.
+        y = panel.y + panel.height - (PUSH / 2 + 10 + row * (PUSH + 8)) * size - inset
         return Label(x, y, words, size=16 * size, bold=True)
 
     def _moved(self, moment: Any) -> float | None:
@@ -199,6 +211,16 @@ class Acting:
             )
             for x in np.arange(panel.x + first, panel.x + panel.width, apart).tolist()
         ]  # fmt: skip
+
+
+def _within(panel: Panel, tail: Array, tip: Array) -> float:
+    """Return which share of an arrow lies in a panel, from its tip on; all if that does not."""
+    low = np.array([panel.x, panel.y])
+    high = low + np.array([panel.width, panel.height])
+    if not ((low < tip) & (tip < high)).all():
+        return 1.0
+    edge, way = np.where(tail > tip, high, low), tail - tip
+    return float(np.divide(edge - tip, way, out=np.ones(2), where=way != 0).min(initial=1.0))
 
 
 def _signed(value: float) -> str:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from blocksim.common.version import __version__
 from blocksim.engines.base import Quality, Settings
 from blocksim.simulation.recording import Recording
+from blocksim.view.acting import Acting
 from blocksim.view.canvas import Canvas, Label, Panel, Shape, colour
 from blocksim.view.captions import gravity_arrow, legend_of, title
 from blocksim.view.solidscene import WAY, force_lines, told
@@ -40,18 +41,19 @@ def solid_figure(answer: Check[SpatialAssembly]) -> Figure:
     stage, panel = SolidStage(run), Panel(0, FOOT, WIDE, TALL - HEAD - FOOT)
     view = SpatialView(stage, panel, stage.swept - [stage.middle, 0.0, 0.0])
     states = tuple(each.state for each in answer.joints)
-    shapes = view.shapes(stage.at(1.0)._replace(joints=states))
-    forces = _forces(answer, view)
-    canvas, legend = Canvas(WIDE, TALL), told(states)
+    moment, acting = stage.at(1.0)._replace(joints=states), Acting(stage, view, panel, 1.0)
+    beside, amounts = acting.aside(moment, 1.0)
+    forces, loads = _forces(answer, view), [*acting.shapes(moment), *beside]
+    canvas, legend = Canvas(WIDE, TALL), [*told(states), *acting.entries]
     head = title(stage, panel, answer.verdict.value.upper(), TALL, 1.0, moving=False)
     said = [] if rates is None else ["as it begins to fall, enlarged"]
     said += ["forces at joints: length and width in proportion"] if forces else []
     foot = Label(24, 15, ", ".join(said), 13.0, QUIET)
     marks, words = legend_of(legend, WIDE, 1.0)
     pull, name = gravity_arrow(stage, view, panel, 1.0)
-    canvas.keep([(panel, [*view.still, *pull])], [*head, *name, foot, *words])
+    canvas.keep([(panel, [*view.still, *pull])], [*head, *name, *amounts, foot, *words])
     whole = Panel(0, 0, WIDE, TALL)
-    canvas.draw([(panel, [*shapes, *forces]), (whole, marks)])
+    canvas.draw([(panel, [*view.shapes(moment), *forces, *loads]), (whole, marks)])
     return canvas.figure()
 
 
