@@ -44,9 +44,6 @@ SLOWLY = 1e-3
 """Velocity of blocks [sqrt(size g)]; they hit with more than the accuracy's share of theirs."""
 MATTERS = 1e-3
 """Way of what hits in a step, over the accuracy, up to which the moment makes no difference."""
-SHARP = 1e-2
-"""Error of that moment, over the accuracy, as a share of the time in which gravity makes up for
-the velocity of the impact."""
 LOCATED = 1e-10
 """Overlap at an impact that is none [size]."""
 ROUNDS, MOST_PARTS, FEW, CROWD = 5, 4, 4, 32
@@ -136,26 +133,24 @@ class Stepping(Placed):
         """Take a step up to the first impact; return its length, None if none is found."""
         whole = step
         for _ in range(ROUNDS):
-            speed = self._fastest(passing)
-            near = max(LOCATED, SHARP * self._accuracy * speed**2)
             (gap, rate), (later, at_end) = (
                 (one[passing], two[passing]) for one, two in (self._begins, self._ends)
             )
-            step = first_closing(gap + near / 2, rate, later + near / 2, at_end, step)
+            step = first_closing(gap + LOCATED / 2, rate, later + LOCATED / 2, at_end, step)
             found = self._keys, self._solution
             vars(self).update(before)
             if step < LEAST * whole:
                 # What touches and approaches at the start hits there.
                 self._look(whole)
-                return 0.0 if self._impact(near) else None
+                return 0.0 if self._impact() else None
             # What contacts do in a part of a step is what they did in all of it.
             self._guess = found
             passing = self._smooth(step)
             if not self._residual <= RESIDUAL:
                 return None
-            passing &= self._ends[0] < -near
+            passing &= self._ends[0] < -LOCATED
             if not passing.any():
-                return step if self._impact(near) else None
+                return step if self._impact() else None
         return None
 
     def _fastest(self, passing: Passing) -> float:
@@ -232,11 +227,11 @@ class Stepping(Placed):
             turn[self._smooth_joints, 2:] = 0.0
         return turn
 
-    def _impact(self, near: float) -> bool:
+    def _impact(self) -> bool:
         """Let velocities jump so that nothing closes further; tell whether they could."""
         gap, rate = self._ends
         # What closes a moment later hits as well, or the order would be that of round-off.
-        shut = self._shut | ((gap <= max(near, SHUT)) & (rate < 0))
+        shut = self._shut | ((gap <= SHUT) & (rate < 0))
         hits = shut & ~self._shut
         if not hits.any():
             return True
