@@ -86,6 +86,26 @@ def test_boxes_that_touch_are_told_apart_and_turned_ones_taken(tmp_path: Path) -
     assert np.ptp(hull.corners, axis=0) == pytest.approx([0.3048] * 3, rel=1e-6)
 
 
+SIDES = ((1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4))
+"""Faces of a box by its corners, z changing fastest and x slowest."""
+
+
+def test_faces_with_four_sides_of_boxes_without_names_are_told_apart(tmp_path: Path) -> None:
+    """Three boxes on each other, whose corners are the same where they touch."""
+    lines: list[str] = []
+    for low in range(3):
+        places = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (low, low + 1)]
+        lines += [f"v {x} {y} {z}" for x, y, z in places]
+        lines += [f"f {' '.join(str(8 * low + at) for at in side)}" for side in SIDES]
+    path = written(tmp_path / "three.obj", "\n".join(lines).encode())
+    found = converted(path, "m", "geometry.1").assembly
+    assert [each.name for each in found.blocks] == ["geometry.2", "geometry.3"]
+    for low, block in enumerate(found.blocks, start=1):
+        (hull,) = block.hulls
+        assert hull.box.tolist() == [[0, 0, low], [1, 1, low + 1]]
+    assert len(found.joints) == 2
+
+
 def flat() -> Any:
     made = box()
     made.vertices[:, 2] = 0
@@ -106,7 +126,7 @@ BROKEN = {
     "open.stl": (lambda: box(faces=slice(1, None)), "open at 3 edges"),
     "flat.stl": (flat, "a flat hull"),
     "ring.ply": (lambda: trimesh.creation.annulus(0.5, 1, 0.3, sections=8), "dented"),
-    "far.stl": (lambda: box(extents=(1e12, 1, 1)), "within 1e+09 m"),
+    "far.stl": (lambda: box(extents=(1e12, 1, 1)), "within 1e+09 of the origin"),
     "round.stl": (lambda: trimesh.creation.icosphere(subdivisions=5), "10242 corners"),
     "many.ply": (lambda: trimesh.creation.icosphere(subdivisions=7), "327680 facets"),
     "large.stl": (lambda: b"x" * 20_000_001, "at most 20000000 bytes"),
@@ -115,6 +135,8 @@ BROKEN = {
     "nan.obj": (lambda: b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "finite coordinates"),
     "lost.obj": (lambda: b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "mesh"),
     "empty.obj": (lambda: b"", "0 facets"),
+    "points.ply": (lambda: trimesh.PointCloud(np.eye(3)), "0 facets"),
+    "line.obj": (lambda: b"v 0 0 0\nv 1 0 0\nl 1 2\n", "0 facets"),
     "free.ply": (
         lambda: trimesh.util.concatenate([box(), box().apply_translation([0, 0, 1])]),
         "all free",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, ClassVar, TypeVar, cast
@@ -13,6 +14,8 @@ from blocksim.common.errors import MISSING, InputError
 Said = TypeVar("Said")
 UNKNOWN = "unexpected_keyword_argument"
 """What pydantic calls a key that a table has not."""
+COUNTED = re.compile(r"^\w+ should have (at \w+ \d+ \w+) after validation, not .*$")
+"""What pydantic says of a list with too few or too many entries."""
 
 
 class Written:
@@ -41,16 +44,18 @@ def as_said(
     schema: type[Said],
     table: object,
     where: str | None = None,
+    unknown: str = "there is no such key",
 ) -> Said:
     """Check what a table of a file says.
 
     `schema`: A dataclass.
     `where`: The file.
+    `unknown`: What is said of a key that the table has not.
     """
     try:
         return _adapter(schema).validate_python(table)
     except ValidationError as error:
-        raise _first_of(error, table, where) from None
+        raise _first_of(error, table, where, unknown) from None
 
 
 @cache
@@ -58,7 +63,9 @@ def _adapter(schema: type[Said]) -> TypeAdapter[Said]:
     return TypeAdapter(schema)
 
 
-def _first_of(error: ValidationError, table: object, where: str | None) -> InputError:
+def _first_of(
+    error: ValidationError, table: object, where: str | None, unknown: str
+) -> InputError:
     """Turn the first of pydantic's complaints into one line."""
     errors = error.errors(include_url=False, include_context=False)
     # A misspelt key shows twice, as unknown and as missing: the first says more.
@@ -67,11 +74,10 @@ def _first_of(error: ValidationError, table: object, where: str | None) -> Input
     missing = first["type"] in {"missing", "missing_argument"}
     field = _place(first["loc"], table, missing=missing)
     if first["type"] == UNKNOWN:
-        allowed = "left out: there is no such key"
-        return InputError(field, first["input"], allowed, where=where)
+        return InputError(field, first["input"], f"left out: {unknown}", where=where)
     if missing:
         return InputError(field, MISSING, "given", where=where)
-    said = first["msg"].removeprefix("Input should be ")
+    said = COUNTED.sub(r"\1", first["msg"].removeprefix("Input should be "))
     return InputError(field, first["input"], said, where=where)
 
 

@@ -76,14 +76,15 @@ def convex_block(name: str, points: Array, facets: Facets, *, fixed: bool) -> di
     Facets may be turned inwards: what is closed and lies on the hull everywhere is the hull.
     """
     field, used = f"block {name}", np.unique(facets)
-    allowed = f"at most {MOST_CORNERS} corners within {COORDINATE.high:g} m"
     own = points[used]
     pairs = np.sort(facets[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     edges, times = np.unique(pairs, axis=0, return_counts=True)
     loose = int((times % 2 * (edges[:, 0] != edges[:, 1])).sum())
     require(loose == 0, field, f"open at {loose} edges", "a closed surface")
-    near = len(used) <= MOST_CORNERS and bool((np.abs(own) <= COORDINATE.high).all())
-    require(near, field, f"{len(used)} corners", allowed)
+    corners, far = len(used), float(np.abs(own).max())
+    require(corners <= MOST_CORNERS, field, f"{corners} corners", f"at most {MOST_CORNERS}")
+    high = COORDINATE.high
+    require(far <= high, field, f"a coordinate of {far:.12g}", f"within {high:g} of the origin")
     try:
         hull = Polyhedron(own)
     except InputError as error:
@@ -114,7 +115,9 @@ def _objects(content: bytes, ending: str) -> Iterator[tuple[str, Array, Facets]]
             scene: Any = library.load_scene(io.BytesIO(content), file_type=ending, **options)
             dumped: list[Any] = scene.dump()
         # The library gives objects in no order of their own.
-        meshes = sorted(dumped, key=lambda mesh: str(mesh.metadata["name"]))
+        # Points and lines are no bodies.
+        solid = [each for each in dumped if hasattr(each, "faces")]
+        meshes = sorted(solid, key=lambda mesh: str(mesh.metadata["name"]))
         total = sum(len(mesh.faces) for mesh in meshes)
         # Files without objects have no names: their bodies are numbered.
         named = ending in {"obj", "glb"}
@@ -141,7 +144,9 @@ def _objects(content: bytes, ending: str) -> Iterator[tuple[str, Array, Facets]]
             known = 0 <= corner < max(1, len(each))
             require(known, "mesh", f"corner {corner} of a facet", f"0 to {len(each) - 1}")
         name, before = names[at], names[:at].count(names[at])
-        yield f"{name}-{before + 1}" if before else name, own, place.ravel()[mesh.faces]
+        # The library parts both triangles of a four-sided face: all first ones, all second.
+        facets = np.concatenate(_connected(mesh.faces))
+        yield f"{name}-{before + 1}" if before else name, own, place.ravel()[facets]
 
 
 def _bodies(facets: Facets) -> Iterator[Facets]:
@@ -161,14 +166,22 @@ def _bodies(facets: Facets) -> Iterator[Facets]:
             continue
         run = facets[start : at + 1]
         start = at + 1
-        # Numbered among this run's corners: a file of many bodies has many more.
-        used, place = np.unique(run, return_inverse=True)
-        own = place.reshape(run.shape)
-        pairs = np.concatenate([own[:, :2], own[:, 1:]])
-        label = connected(len(used), *pairs.T)[own[:, 0]]
-        yield from (run[label == each] for each in np.unique(label))
+        yield from _connected(run)
     if open_edges:
         yield facets[start:]
+
+
+def _connected(facets: Facets) -> list[Facets]:
+    """Return facets that share corners together, those of the first facet first."""
+    # Numbered among these corners: a file of many bodies has many more.
+    used, place = np.unique(facets, return_inverse=True)
+    own = place.reshape(facets.shape)
+    pairs = np.concatenate([own[:, :2], own[:, 1:]])
+    label = connected(len(used), *pairs.T)[own[:, 0]]
+    _, first, group = np.unique(label, return_index=True, return_inverse=True)
+    begin = first[group]
+    order = np.argsort(begin, kind="stable")
+    return np.split(facets[order], np.flatnonzero(np.diff(begin[order])) + 1)
 
 
 def fans(faces: Sequence[NDArray[np.int64]]) -> Facets:

@@ -141,7 +141,7 @@ def problem_in_space(data: object) -> Problem[SpatialAssembly]:
 
     `data`: A dict with the keys of `SpatialFile`.
     """
-    written = as_said(SpatialFile, data)
+    written = as_said(SpatialFile, data, unknown="there is no such key in space")
     solids = _solids(written)
     assembly = assembly_in_space(
         solids,
