@@ -17,7 +17,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgba
 from matplotlib.text import Text
 from recorded import accessor, parts_of
-from running import inside
+from running import inside, refused
 from scipy.spatial.transform import Rotation
 from windows import wait_until
 from worlds import Quality
@@ -322,6 +322,10 @@ def test_commands_show_a_recording_in_space(tmp_path: Path) -> None:
         out = tmp_path / f"fall.{kind}"
         done = inside("render", str(kept), "--out", str(out))
         assert done.returncode == 0, done.stderr
+    for kind in ("html", "dxf"):
+        done = refused("render", kept, "--out", tmp_path / f"fall.{kind}")
+        assert f"must be another kind: a .{kind} is of no recorded motion" in done
+        assert not (tmp_path / f"fall.{kind}").exists()
     rows = list(csv.DictReader((tmp_path / "fall.csv").read_text().splitlines()))
     size = run.problem.assembly.size
     places = [[float(row[key]) for key in ("x_m", "y_m", "z_m")] for row in rows]

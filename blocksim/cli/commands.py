@@ -134,7 +134,8 @@ def render(
         or filmed.beside
         or str(asked.scene).endswith(".npz")
     ):
-        require(kind != "dxf", "--out", str(out), "another kind: a .dxf is of no motion")
+        moves = f"another kind: a .{kind} is of no recorded motion"
+        require(kind not in {"dxf", "html"}, "--out", str(out), moves)
         still = filmed.time is None or kind not in FILMS
         require(still, "--time", filmed.time, "left out of a film")
         require_height(filmed.height)
