@@ -2,6 +2,7 @@
 
 import copy
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -208,3 +209,35 @@ def test_an_assembly_of_compas_in_space_is_its_blocks(tmp_path: Path, dem: bool)
     mesh["data"]["face"].popitem()
     with pytest.raises(InputError, match="open at 3 edges"):
         load_structure(written(path, broken), friction=0.7)
+
+
+MESH = "must be a mesh: corners with x, y and z, and faces of them"
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda mesh: mesh["vertex"]["0"].pop("x"), f"""block 3 = "no 'x'": {MESH}"""),
+        (lambda mesh: mesh.pop("vertex"), f"""block 3 = "no 'vertex'": {MESH}"""),
+        (lambda mesh: mesh["face"].update({"0": [0, 1, 99]}), """block 3 = "no '99'": """),
+        (lambda mesh: mesh.update(vertex=[]), f"block 3 = 'tables of another shape': {MESH}"),
+        (
+            lambda mesh: mesh["vertex"]["0"].update(x=np.nan),
+            "block 3 = 'a coordinate of nan': ",
+        ),
+    ],
+)
+def test_a_block_of_compas_that_is_no_mesh_is_named(
+    tmp_path: Path, change: Callable[[Any], object], said: str
+) -> None:
+    table = compas_dome(dem=False)
+    change(table["data"]["graph"]["data"]["node"]["3"]["block"]["data"])
+    assert said in refused("check", written(tmp_path / "dome.json", table), "--mu", "0.7")
+
+
+def test_support_or_not_is_true_or_false(tmp_path: Path) -> None:
+    """A word is neither: "no" was a support."""
+    table = compas_dome(dem=True)
+    table["data"]["elements"]["guid-3"]["data"]["is_support"] = "no"
+    done = refused("check", written(tmp_path / "dome.json", table), "--mu", "0.7")
+    assert "block 3: is_support = 'no': must be true or false" in done

@@ -8,7 +8,8 @@ are blocks in space.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any, cast
@@ -19,9 +20,9 @@ from numpy.typing import NDArray
 from blocksim.blocks.outlines import counter_clockwise
 from blocksim.blocks.polygons import MOST_BLOCKS
 from blocksim.blocks.shapes import MOST_CORNERS
-from blocksim.common.checks import COORDINATE, require
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError
-from blocksim.reading.meshes import convex_block, fans
+from blocksim.reading.meshes import convex_block, fans, require_near
 
 STRAIGHT = 1e-4
 """How far a face may be turned from along or across the plane [rad]: files have 7 digits."""
@@ -61,13 +62,12 @@ def read_compas(data: Table) -> dict[str, Any]:
     `data`: What the JSON file says.
     Returns: As of a structure file, without friction. Blocks have the names of their nodes.
     """
-    try:
-        meshes = [_mesh(*each) for each in islice(_nodes(data), MOST_BLOCKS + 1)]
-    except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
-        if isinstance(error, InputError):
-            raise
-        allowed = "an assembly of compas_assembly or compas_cra: a graph of blocks"
-        raise InputError("file", f"{type(error).__name__}: {error}", allowed) from None
+    with _told("file", "an assembly of compas_assembly or compas_cra: a graph of blocks"):
+        nodes = list(islice(_nodes(data), MOST_BLOCKS + 1))
+    meshes: list[_Mesh] = []
+    for name, block, fixed in nodes:
+        with _told(f"block {name}", "a mesh: corners with x, y and z, and faces of them"):
+            meshes.append(_mesh(name, _inside(block), fixed))
     require(0 < len(meshes) <= MOST_BLOCKS, "blocks", len(meshes), f"1 to {MOST_BLOCKS}")
     depthwise = _direction(meshes)
     if depthwise is None:
@@ -89,6 +89,28 @@ def read_compas(data: Table) -> dict[str, Any]:
     }
 
 
+@contextmanager
+def _told(field: str, allowed: str) -> Generator[None]:
+    """Refuse tables of another shape in words."""
+    try:
+        yield
+    except InputError:
+        raise
+    except KeyError as error:
+        raise InputError(field, f"no {error}", allowed) from None
+    except ValueError as error:
+        raise InputError(field, str(error), allowed) from None
+    except (TypeError, AttributeError):
+        raise InputError(field, "tables of another shape", allowed) from None
+
+
+def _is_held(name: str, table: Table) -> bool:
+    """Tell whether a block is a support, which is yes or no, or is left out."""
+    said = table.get("is_support")
+    require(said in {True, False, None}, f"block {name}: is_support", said, "true or false")
+    return bool(said)
+
+
 def _inside(value: object) -> Table:
     """Return a table without the wrapping that says its type."""
     table = cast("dict[str, Any]", value)
@@ -97,13 +119,13 @@ def _inside(value: object) -> Table:
     return table
 
 
-def _nodes(data: Table) -> Iterator[tuple[str, Table, bool]]:
+def _nodes(data: Table) -> Iterator[tuple[str, object, bool]]:
     """Name, mesh and support of each block, in either of two layouts."""
     if isinstance(data.get("blocks"), dict):
         graph = data["assembly"]
         places = graph["vertex"] if "vertex" in graph else graph["node"]
         for name, block in data["blocks"].items():
-            yield str(name), _inside(block), bool(places[name].get("is_support", False))
+            yield str(name), block, _is_held(name, places[name])
         return
     top = _inside(data)
     if isinstance(top.get("elements"), dict):  # compas_dem: by guid, each placed where it is
@@ -111,11 +133,11 @@ def _nodes(data: Table) -> Iterator[tuple[str, Table, bool]]:
             element = _inside(each)
             moved = element.get("transformation")
             require(moved is None, f"block {at}", "transformed", "of geometry where it stands")
-            yield str(at), _inside(element["geometry"]), bool(element.get("is_support"))
+            yield str(at), element["geometry"], _is_held(str(at), element)
         return
     graph = _inside(top.get("graph", top))
     for name, node in graph["node"].items():
-        yield str(name), _inside(node["block"]), bool(node.get("is_support", False))
+        yield str(name), node["block"], _is_held(name, node)
 
 
 def _mesh(name: str, block: Table, fixed: bool) -> _Mesh:
@@ -124,8 +146,7 @@ def _mesh(name: str, block: Table, fixed: bool) -> _Mesh:
         [[float(each[axis]) for axis in "xyz"] for each in block["vertex"].values()]
     ).reshape(-1, 3)
     field = f"block {name}"
-    near = bool((np.abs(points) <= COORDINATE.high).all())
-    require(near, field, points.tolist(), f"corners within {COORDINATE.high:g} m")
+    require_near(points, field)
     found = tuple(
         np.array([index[str(key)] for key in _listed(row)], dtype=np.int64)
         for row in _listed(block["face"])

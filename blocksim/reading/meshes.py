@@ -81,10 +81,9 @@ def convex_block(name: str, points: Array, facets: Facets, *, fixed: bool) -> di
     edges, times = np.unique(pairs, axis=0, return_counts=True)
     loose = int((times % 2 * (edges[:, 0] != edges[:, 1])).sum())
     require(loose == 0, field, f"open at {loose} edges", "a closed surface")
-    corners, far = len(used), float(np.abs(own).max())
+    corners = len(used)
     require(corners <= MOST_CORNERS, field, f"{corners} corners", f"at most {MOST_CORNERS}")
-    high = COORDINATE.high
-    require(far <= high, field, f"a coordinate of {far:.12g}", f"within {high:g} of the origin")
+    require_near(own, field)
     try:
         hull = Polyhedron(own)
     except InputError as error:
@@ -96,6 +95,12 @@ def convex_block(name: str, points: Array, facets: Facets, *, fixed: bool) -> di
     way = "convex; one that is not consists of convex ones (polyhedra in a structure file)"
     require(dent <= DENT, field, f"dented by {dent:.2g} of its length", way)
     return {"id": name, "vertices": own.tolist(), "fixed": fixed}
+
+
+def require_near(points: Array, field: str) -> None:
+    """Refuse corners of a block that are not finite, or too far from the origin."""
+    far, high = float(np.abs(points).max(initial=0.0)), COORDINATE.high
+    require(far <= high, field, f"a coordinate of {far:.12g}", f"within {high:g} of the origin")
 
 
 def _objects(content: bytes, ending: str) -> Iterator[tuple[str, Array, Facets]]:
