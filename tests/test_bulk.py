@@ -370,6 +370,27 @@ def test_a_file_of_cases_is_one_table_one_page_and_json(folder: Path) -> None:
     assert "Verdict of the case: wind" in text
 
 
+SPATIAL = """
+[[case]]
+name = "upright"
+[[case]]
+name = "pushed"
+push = 0.1
+"""
+
+
+def test_no_case_governs_where_none_tells_how_near_it_is_to_falling(tmp_path: Path) -> None:
+    """In space there is neither a share that is used nor a thrust; one that falls governs."""
+    path = tmp_path / "cases.toml"
+    path.write_text(SPATIAL)
+    said = ran("check", "tower", "--mu", "0.7", "--cases", path)
+    assert said.startswith("STANDS  (none of 2 cases is known to be nearest to falling, ")
+    assert len(said.splitlines()) == 4
+    path.write_text(SPATIAL.replace("0.1", "0.5"))
+    said = ran("check", "tower", "--mu", "0.7", "--cases", path, code=1)
+    assert said.startswith("COLLAPSES  (governed by pushed, of 2 cases, ")
+
+
 def test_no_case_at_all_is_refused() -> None:
     with pytest.raises(InputError, match="at least one"):
         check_cases([])

@@ -47,16 +47,22 @@ def cases_lines(answer: Cases) -> list[str]:
     first = answer.governing
     rows = [HEADINGS, *map(case_row, answer.answers)]
     wide = [max(len(row[at]) for row in rows) for at in range(len(HEADINGS) - 1)]
-    lines = [
-        f"{first.answer.verdict.value.upper()}  (governed by {first.case.name}, of "
-        f"{len(answer.answers)} cases, {lasting(answer.wall_s)})"
-    ]
+    count = len(answer.answers)
+    alike = count > 1 and answer.answers[1].order == first.order
+    which = (
+        f"none of {count} cases is known to be nearest to falling"
+        if alike
+        else f"governed by {first.case.name}, of {count} cases"
+    )
+    lines = [f"{first.answer.verdict.value.upper()}  ({which}, {lasting(answer.wall_s)})"]
     for row in rows:
         cells = [f"{cell:>{most}}" for cell, most in zip(row[:3], wide, strict=False)]
         lines.append(f"  {'  '.join(cells)}  {row[3]:<{wide[3]}}  {row[4]}")
-    lines.append("  used    share of width, friction and strength that the safest state needs")
-    lines.append("  thrust  least to greatest, in kN/m, or kN where blocks differ in depth")
-    return lines
+    told = (
+        (0, "  used    share of width, friction and strength that the safest state needs"),
+        (2, "  thrust  least to greatest, in kN/m, or kN where blocks differ in depth"),
+    )
+    return lines + [words for at, words in told if any(row[at] != "-" for row in rows[1:])]
 
 
 def cases_record(answer: Cases) -> CasesRecord:
