@@ -115,7 +115,7 @@ def test_a_rib_without_a_unit_is_asked_for_one(tmp_path: Path) -> None:
     assert "it is 5000 by 4" in bare
     ran(*asked, *layers, "--unit", "mm")
     for wrong, words in (
-        (("--layer", "blocks=Ripe"), "layer = 'Ripe': must be one of the drawing's: 0-Auf"),
+        (("--layer", "blocks=Ripe"), "layer = 'Ripe': must be one of the file's: 0-Auf"),
         (("--layer", "stones=Rippe"), "--layer = 'stones=Rippe': must be blocks=NAME"),
         (("--unit", "ell"), "--unit = 'ell': must be m, mm, cm"),
     ):

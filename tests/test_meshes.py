@@ -165,6 +165,14 @@ def test_a_mesh_has_no_unit_of_its_own(tmp_path: Path, monkeypatch: pytest.Monke
         load_structure(path, friction=0.7, reading=Reading(unit="m"))
 
 
+@pytest.mark.parametrize("role", ["blocks", "supports", "ignored"])
+def test_a_name_that_no_object_has_is_refused(tmp_path: Path, role: str) -> None:
+    asked = ("check", file_of(tmp_path, "obj"), "--mu", "0.7", "--unit", "m")
+    said = refused(*asked, "--layer", f"{role}=nosuch")
+    assert "layer = 'nosuch': must be one of the file's: " in said
+    assert "supports" in said
+
+
 def compas_dome(*, dem: bool) -> dict[str, Any]:
     """Return a dome as compas_assembly or compas_dem writes it."""
     nodes, elements = {}, {}

@@ -74,7 +74,7 @@ def test_forty_polylines_are_answered_as_the_same_polygons(
     for one, other in zip(corners(drawn), corners(known), strict=True):
         assert one == pytest.approx(other, abs=1e-12)
     assert answers(drawn) == pytest.approx(told, rel=1e-12)
-    said = {"R12": "of the drawing is m, as asked", "R2018": "unit mm, by"}
+    said = {"R12": "a unit of the file is m, as asked", "R2018": "unit mm, by"}
     assert said[version] in drawn.notes[0]
     # Which way round an outline was drawn is no matter to be told of.
     assert len(drawn.notes) == 2

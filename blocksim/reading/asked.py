@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from blocksim.common.checks import LENGTH, is_number, require
@@ -75,6 +75,14 @@ class Reading:
         named = {role: self.layers.get(role, (role,)) for role in ROLES}
         return {name.casefold(): role for role, names in named.items() for name in names}
 
+    def require_layers(self, seen: Iterable[str]) -> None:
+        """Refuse a layer that is asked for and not there."""
+        there = sorted(filter(None, seen))
+        known = ", ".join(there[:20]) or "none"
+        for name in (name for names in self.layers.values() for name in names):
+            found = name.casefold() in map(str.casefold, there)
+            require(found, "layer", name, f"one of the file's: {known}")
+
     def unit_of(self, found: Unit | None) -> Unit | None:
         """Return the unit that was asked for, or else the one the drawing says."""
         if self.unit is None:
@@ -83,4 +91,4 @@ class Reading:
             metres, said = UNITS[self.unit], self.unit
         else:
             metres, said = self.unit, f"{self.unit:g} m"
-        return Unit(metres=metres, said=f"a unit of the drawing is {said}, as asked")
+        return Unit(metres=metres, said=f"a unit of the file is {said}, as asked")

@@ -180,7 +180,7 @@ def drawing_of(
         else:
             lines[role == "supports"].append(shape)
         require(len(blocks) <= MOST_BLOCKS, "blocks", "more", f"at most {MOST_BLOCKS}")
-    _require_layers(reading, seen)
+    reading.require_layers(seen)
     moved = 0.0
     metres = reading.unit_of(unit)
     # Without a unit it is refused; what it would be in the unit m is drawn nevertheless.
@@ -198,15 +198,6 @@ def drawing_of(
         left=_listed(left),
         moved=moved,
     )
-
-
-def _require_layers(reading: Reading, seen: set[str]) -> None:
-    """Refuse a layer that is asked for and not there."""
-    there = {each.casefold() for each in seen}
-    for names in reading.layers.values():
-        for name in names:
-            known = ", ".join(sorted(filter(None, seen))[:20]) or "none"
-            require(name.casefold() in there, "layer", name, f"one of the drawing's: {known}")
 
 
 def _closed(

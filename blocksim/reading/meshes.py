@@ -54,8 +54,10 @@ def read_mesh(path: AnyPath, reading: Reading) -> dict[str, Any]:
         )
     require(reading.snap is None, "snap", reading.snap, "left out: it is of drawings")
     blocks: list[dict[str, Any]] = []
+    seen: set[str] = set()
     for name, points, facets in _objects(content, ending):
         kind = re.sub(r"[._ -]*\d+$", "", name).casefold()
+        seen |= {name, kind}
         role = reading.roles.get(name.casefold(), reading.roles.get(kind))
         if role == "ignored":
             continue
@@ -67,6 +69,7 @@ def read_mesh(path: AnyPath, reading: Reading) -> dict[str, Any]:
             found = convex_block(own, corners, body, fixed=role == "supports")
             found["vertices"] = (np.array(found["vertices"]) * unit.metres).round(12).tolist()
             blocks.append(found)
+    reading.require_layers(seen)
     return {"notes": [f"mesh, z upwards; {unit.said}"], "blocks": blocks}
 
 
