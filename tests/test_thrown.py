@@ -188,6 +188,43 @@ def test_a_corner_that_hits_parts_with_its_share_of_the_velocity(
     )
 
 
+@BOTH
+@settings(max_examples=6)
+@example(speed=6.0, angle=45.0, clear=0.01, start=0.04, side=0.02)
+@given(
+    speed=st.floats(0.5, 30),
+    angle=st.floats(10, 80),
+    clear=st.floats(1e-3, 0.1),
+    start=st.floats(0.01, 0.3),
+    side=st.floats(1e-3, 0.1),
+)
+def test_what_passes_beside_a_corner_flies_on(
+    method: str, speed: float, angle: float, clear: float, start: float, side: float
+) -> None:
+    """Of two blocks that fall one passes the other's upper right corner, up and to the left."""
+    way = np.exp(1j * math.radians(180 - angle))
+    centre = -start * way + (clear + side / math.sqrt(2)) * way / 1j
+    assume(centre.real > side / 2)
+    low, left = 20.5 + centre.imag - side / 2, 0.5 + centre.real - side / 2
+    corners, low_left = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]), np.array([left, low])
+    blocks = [
+        {"id": 0, "vertices": [[-99, -1], [99, -1], [99, 0], [-99, 0]], "fixed": True},
+        {"id": 1, "vertices": (corners + np.array([-0.5, 19.5])).tolist(), "free": True},
+        {
+            "id": 2,
+            "vertices": (side * corners + low_left).tolist(),
+            "free": True,
+            "velocity": [speed * way.real, speed * way.imag],
+        },
+    ]
+    problem = structure_of({"friction": 0.5, "size": 1, "blocks": blocks})
+    recording = simulate(problem, method=method, duration=3 * start / speed / problem.seconds)
+    time = recording.times * problem.seconds
+    went = recording.poses[:, 1] - recording.poses[0, 1]
+    wanted = [speed * way.real * time, speed * way.imag * time - G * time**2 / 2, 0 * time]
+    assert np.allclose(went, np.transpose(wanted), atol=1e-9)
+
+
 @DIRECT
 def test_what_is_pushed_off_stops_as_friction_says(method: str) -> None:
     gravity = 3.71

@@ -230,8 +230,10 @@ class Stepping(Placed):
     def _impact(self) -> bool:
         """Let velocities jump so that nothing closes further; tell whether they could."""
         gap, rate = self._ends
+        # What passes the line of a face beyond its end does not touch it.
+        there = self._contacts().gap.min(axis=1, keepdims=True) <= SHUT
         # What closes a moment later hits as well, or the order would be that of round-off.
-        shut = self._shut | ((gap <= SHUT) & (rate < 0))
+        shut = self._shut | ((gap <= SHUT) & (rate < 0) & there)
         hits = shut & ~self._shut
         if not hits.any():
             return True
