@@ -231,6 +231,29 @@ def test_blocks_fall_in_space_as_in_the_plane() -> None:
     assert portals_apart(0.0125) < 1e-6
 
 
+def test_a_thin_bar_that_falls_on_its_edge_turns_about_it() -> None:
+    """What an impact takes in a moment was taken for the acceleration of the step after it."""
+    wide, tall, lean = 0.04, 0.01, 0.55
+    corners = np.array(known_motions.box(0, 0, wide, tall)) @ [1, 1j] * np.exp(-1j * lean)
+    # It has turned for a while at the last frame, and lies on its edge alone.
+    arm = corners.mean() - corners[np.argmin(corners.imag)]
+    size, until, since = 0.5, 1.0, 0.015
+    fell = size * (until - since) ** 2 / 2
+    corners += 1j * (fell - corners.imag.min())
+    made = known_motions.blocks(
+        3.0, np.column_stack([corners.real, corners.imag]).tolist(), free=True
+    )
+    recording = blocksim.simulate(extruded(made), method="direct", duration=until)
+    assert recording.assembly.size == size
+    assert recording.times[-1] == pytest.approx(until)
+    # About the edge angular momentum stays.
+    about = abs(arm) ** 2 + (wide**2 + tall**2) / 12
+    spin = arm.real * math.sqrt(2 * fell) / about
+    turned = np.linalg.norm(recording.poses[-1, 0, 3:])
+    assert turned == pytest.approx(abs(spin) * since * math.sqrt(size), rel=0.05)
+    assert recording.quality.gain < 1e-3
+
+
 def tumbling(step: float) -> tuple[float, float]:
     """How far spin and energy drift of a box that turns freely about its middle axis."""
     solids = [Solid(parts=(GROUND,), fixed=True)]

@@ -52,6 +52,8 @@ PUSHES = 6
 """Most looks at what overlaps, with a push after each but the last."""
 MOST = 5e-4
 """Overlap after impacts beyond which the step is halved [size]."""
+SHORT = 0.1
+"""Share of the usual step below which a step tells nothing of accelerations."""
 NEAR = 1e-3
 """Beyond the way of a step, how near blocks are that are looked at [size]."""
 
@@ -186,10 +188,12 @@ class SolidBlocks:
         at_end = scaled + root * gain
         drift = now.along(scaled) + last.along(at_end) - now.along(at_end)
         drift[:, 0] += np.maximum(first.gaps, 0.0) / step
-        self._solve(points, friction, now, drift / step, shut, middle, step)
+        found = self._solve(points, friction, now, drift / step, shut, middle, step)
         if self._residual > COARSE:
             return 0.5
-        self._advance(step, 0.5)
+        self._advance(step, found, 0.5)
+        if step > SHORT * self._step:
+            self._speeding = found
         after = gaps_of(self.bodies, points, middle, self._place)
         opened = first.gaps > PASSED
         passes = ~shut & (after < np.where(opened, 0.0, first.gaps) - PASSED)
@@ -206,13 +210,13 @@ class SolidBlocks:
         drift = now.along(self.bodies.root * velocities)
         drift[:, 0] += np.maximum(gaps, 0.0) / step
         every = np.ones(len(points.gaps), dtype=bool)
-        self._solve(points, friction, now, drift / step, every, middle, step, STEPS)
+        found = self._solve(points, friction, now, drift / step, every, middle, step, STEPS)
         if math.isfinite(self._residual):
-            self._advance(step, 1.0)
+            self._advance(step, found, 1.0)
 
-    def _advance(self, step: float, share: float) -> None:
+    def _advance(self, step: float, speeding: Array, share: float) -> None:
         """Go on with velocities that gain, and with a share of that on the way."""
-        gained = step * self._speeding
+        gained = step * speeding
         self._place = self._place.moved(step * (self._velocities + share * gained))
         self._velocities = self._velocities + gained
 
@@ -226,8 +230,8 @@ class SolidBlocks:
         middle: Place,
         step: float,
         most: int = BRIEFLY,
-    ) -> None:
-        """Solve a step's contacts, of points that are taken; what is found is kept."""
+    ) -> Array:
+        """Solve a step's contacts, of points that are taken, for the accelerations in it."""
         bodies = self.bodies
         turning = bodies.turning(self._velocities + step / 2 * self._speeding)
         at = np.flatnonzero(taken)
@@ -239,7 +243,7 @@ class SolidBlocks:
         self._borne = Borne.nothing(points)
         self._borne.forces[at] = found.forces
         self._residual = float(np.maximum(self._residual, found.residual))
-        self._speeding = found.x.reshape(-1, 6) / bodies.root
+        return found.x.reshape(-1, 6) / bodies.root
 
     def _points(self, place: Place, step: float) -> Found:
         """Find the points of contact about a place."""
