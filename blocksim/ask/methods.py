@@ -78,7 +78,7 @@ def choose(
     if beyond:
         raise InputError("method", chosen.name, beyond)
     if moving and chosen.is_static:
-        able = ", ".join(NAMES)
+        able = ", ".join(each.name for each in _shipped() if not _beyond(each, problem))
         raise InputError("method", chosen.name, f"one of {able}: {chosen.name} moves no blocks")
     still = problem is None or problem.has_statics
     in_space = problem is not None and problem.in_space
