@@ -699,3 +699,45 @@ def test_a_solution_refutes_that_there_is_none() -> None:
     )
     assert _left_over(near) < _left_over(none)
     assert _left_over(none) < _left_over(SimpleNamespace(**{**vars(near), "r_dual": 1e-3}))
+
+
+def box_on_table(**joint: Any) -> dict[str, Any]:
+    """A cube on a table, by a joint that is given."""
+    table, cube = (
+        [[x, y, z] for x in (low, high) for y in (low, high) for z in heights]
+        for low, high, heights in ((-1.0, 2.0, (-1.0, 0.0)), (0.0, 1.0, (0.0, 1.0)))
+    )
+    points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    given = {"a": "table", "b": "cube", "points": points, "normal": [0, 0, 1], **joint}
+    blocks = [
+        {"id": "table", "vertices": table, "fixed": True},
+        {"id": "cube", "vertices": cube},
+    ]
+    return {"friction": 0.6, "blocks": blocks, "joints": [given], "live": [{"body": [1, 0, 0]}]}
+
+
+def test_a_joint_that_is_given_lies_on_its_blocks_and_points_from_one_to_the_other() -> None:
+    """Half of the bed bears half of the lever; a bed of mortar is as good."""
+    assert blocksim.check(structure_of(box_on_table())).load_factor == pytest.approx(0.6)
+    for beside in (0.0, 0.01, -0.01):
+        points = [[x, y, beside] for x, y in ((0.25, 0), (0.75, 0), (0.75, 1), (0.25, 1))]
+        found = blocksim.check(structure_of(box_on_table(points=points))).load_factor
+        assert found == pytest.approx(0.25 / (0.5 - beside))
+    turned = {"a": "cube", "b": "table", "normal": [0, 0, -1]}
+    assert blocksim.check(structure_of(box_on_table(**turned))).load_factor == pytest.approx(
+        0.6
+    )
+    for wrong, said in (
+        (
+            {"points": [[0, 0, 7], [1, 0, 7], [1, 1, 7]]},
+            r"joints\[0\].points = .* it is 6 m off",
+        ),
+        (
+            {"points": [[0, 0, 0], [3, 0, 0], [1, 1, 0]]},
+            r"joints\[0\].points = .* it is 1 m off",
+        ),
+        ({"normal": [0, 0, -1]}, r"joints\[0\].normal = .* it points from cube to table"),
+        ({**turned, "normal": [0, 0, 1]}, r"joints\[0\].normal = .* from table to cube"),
+    ):
+        with pytest.raises(InputError, match=said):
+            structure_of(box_on_table(**wrong))

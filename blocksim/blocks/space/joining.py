@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from blocksim.blocks.assembly import SUPPORT, frozen
+from blocksim.blocks.assembly import SUPPORT, Array, frozen
+from blocksim.blocks.given import OFF, SQUARE
 from blocksim.blocks.outlines import step_of
 from blocksim.blocks.space.assembly import FaceJoint, Solid, SolidBlock, SpatialAssembly
 from blocksim.blocks.space.contact import Contact, Overlap, contact
@@ -43,7 +44,8 @@ def assembly_in_space(
     ----------
     solids : sequence of Solid
     joints : sequence of FaceJoint, optional
-        Taken as they are, by places among `solids`; by default they are found.
+        Taken as they are where they lie on a block, by places among `solids`; by default
+        they are found.
     density : float
         Weight of a unit of volume [N/m3].
     tolerance : float, optional
@@ -53,7 +55,8 @@ def assembly_in_space(
     Raises
     ------
     InputError
-        In one line: a flat block, two that overlap, one that touches nothing.
+        In one line: a flat block, two that overlap, one that touches nothing, a joint that is
+        given off both of its blocks or whose normal points back from the second.
 
     Examples
     --------
@@ -79,6 +82,8 @@ def assembly_in_space(
     place = np.where(fixed, np.cumsum(fixed), np.cumsum(~fixed)) - 1
     if joints is None:
         joints = _found(made, fixed, slack, given=tolerance is not None)
+    else:
+        _require_laid(joints, made)
     placed = tuple(_placed(joint, fixed, place) for joint in joints)
     touched = {index for each in placed for index in (each.before, each.after)}
     for at, solid in enumerate(solids):
@@ -166,6 +171,40 @@ def _found(
                 )
             )
     return joints
+
+
+def _require_laid(joints: Sequence[FaceJoint], made: Sequence[SolidBlock]) -> None:
+    """Refuse joints that are given where no block is, or the wrong way around."""
+    for at, joint in enumerate(joints):
+        one, other = made[joint.before], made[joint.after]
+        pair = f"blocks {one.name} and {other.name}"
+        faces = [face for block in (one, other) for hull in block.hulls for face in hull.faces]
+        off = min(_off(joint.points, block) for block in (one, other))
+        size = min(float(np.ptp(_corners(block), axis=0).max()) / 2 for block in (one, other))
+        allowed = f"on a face of {pair}: it is {off:.3g} m off both"
+        require(off <= OFF * size, f"joints[{at}].points", joint.points.tolist(), allowed)
+        # Out of the first, and into the second.
+        ways = [1.0] * sum(len(hull.faces) for hull in one.hulls)
+        ways += [-1.0] * (len(faces) - len(ways))
+        shares = [
+            way * float(face.normal @ joint.normal)
+            for way, face in zip(ways, faces, strict=True)
+            if np.abs(joint.points @ face.normal - face.offset).max() <= off + SLACK * size
+        ]
+        turned = min(shares, default=0.0) < -SQUARE and max(shares) < SQUARE
+        allowed = f"turned: it points from {other.name} to {one.name}"
+        require(not turned, f"joints[{at}].normal", joint.normal.tolist(), allowed)
+
+
+def _corners(block: SolidBlock) -> Array:
+    return np.concatenate([hull.corners for hull in block.hulls])
+
+
+def _off(points: Array, block: SolidBlock) -> float:
+    """Return how far the farthest point is off the faces of a block, at least [m]."""
+    planes = (hull.planes for hull in block.hulls)
+    beyond = [(points @ normals.T - offsets).max(axis=1) for normals, offsets in planes]
+    return float(np.abs(beyond).min(axis=0).max())
 
 
 def _near(hulls: Sequence[Polyhedron], slack: float) -> Iterable[tuple[int, int]]:
