@@ -87,6 +87,22 @@ def test_boxes_that_touch_are_told_apart_and_turned_ones_taken(tmp_path: Path) -
     assert np.ptp(hull.corners, axis=0) == pytest.approx([0.3048] * 3, rel=1e-6)
 
 
+def test_blocks_of_a_glb_are_called_what_objects_are(tmp_path: Path) -> None:
+    """Objects have names of their own beside those of meshes, which several may share."""
+    scene, unit = trimesh.Scene(), trimesh.creation.box(bounds=[[0, 0, 0], [1, 1, 1]])
+    table = trimesh.creation.box(bounds=[[-1, -1, -1], [2, 2, 0]])
+    scene.add_geometry(table, node_name="supports", geom_name="Cube", transform=UPRIGHT)
+    for low, name in enumerate(("lower", "upper")):
+        up = np.eye(4)
+        up[2, 3] = low
+        scene.add_geometry(unit, node_name=name, geom_name="Box", transform=UPRIGHT @ up)
+    path = written(tmp_path / "named.glb", scene.export(file_type="glb"))
+    found = load_structure(path, friction=0.7).assembly
+    assert [each.name for each in found.supports] == ["supports"]
+    assert [each.name for each in found.blocks] == ["lower", "upper"]
+    assert [each.hulls[0].box[0, 2] for each in found.blocks] == [0, 1]
+
+
 SIDES = ((1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4))
 """Faces of a box by its corners, z changing fastest and x slowest."""
 

@@ -125,11 +125,11 @@ def _objects(content: bytes, ending: str) -> Iterator[tuple[str, Array, Facets]]
         # The library gives objects in no order of their own.
         # Points and lines are no bodies.
         solid = [each for each in dumped if hasattr(each, "faces")]
-        meshes = sorted(solid, key=lambda mesh: str(mesh.metadata["name"]))
+        meshes = sorted(solid, key=_name_of)
         total = sum(len(mesh.faces) for mesh in meshes)
         # Files without objects have no names: their bodies are numbered.
         named = ending in {"obj", "glb"}
-        names = [str(mesh.metadata["name"]) if named else "" for mesh in meshes]
+        names = [_name_of(mesh) if named else "" for mesh in meshes]
     except Exception as error:  # a damaged file makes the library raise almost anything
         said = " ".join(f"{type(error).__name__}: {error}".split())[:200]
         if isinstance(error, ImportError):
@@ -155,6 +155,12 @@ def _objects(content: bytes, ending: str) -> Iterator[tuple[str, Array, Facets]]
         # The library parts both triangles of a four-sided face: all first ones, all second.
         facets = np.concatenate(_connected(mesh.faces))
         yield f"{name}-{before + 1}" if before else name, own, place.ravel()[facets]
+
+
+def _name_of(mesh: Any) -> str:
+    """Return the name of an object, or of its mesh: those without one have a number here."""
+    node = str(mesh.metadata.get("node", ""))
+    return str(mesh.metadata["name"]) if node.isdigit() or not node else node
 
 
 def _bodies(facets: Facets) -> Iterator[Facets]:
