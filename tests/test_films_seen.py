@@ -349,7 +349,7 @@ def test_what_falls_has_no_line_of_thrust_at_rest() -> None:
         film = Film([recorded(COLUMN.tilted(tilt), moved, times)], height=HEIGHT)
         stage = film.shots[0].stage
         assert len(stage.thrust) == 1
-        assert [told for told, _ in film._entries(set(), thrust=True)] == [f"{words} at rest"]
+        assert [told for told, _ in film._entries([set()], thrust=True)] == [f"{words} at rest"]
 
 
 def test_a_film_ends_with_the_last_block_in_sight(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from importlib.metadata import version
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -159,6 +160,24 @@ def test_a_picture_shows_what_acts_on_blocks_and_all_of_it() -> None:
     words = solid_figure(blocksim.check(both)).findobj(lambda each: "push" in text_of(each))
     assert len(words) == 2
     assert abs(np.diff([each.get_position()[1] for each in words])) > words[0].get_fontsize()
+
+
+def test_a_picture_names_the_version_of_the_library_that_answered() -> None:
+    """Not that of blocksim, unless it is blocksim itself."""
+    pytest.importorskip("pybullet")
+    answer = blocksim.check(tower())
+    for method, number in (("limit", blocksim.__version__), ("pybullet", version("pybullet"))):
+        words = map(text_of, solid_figure(replace(answer, method=method)).findobj(Text))
+        assert any(each.endswith(f"   {method} {number}") for each in words)
+
+
+def test_a_legend_has_the_words_of_each_of_two_recordings() -> None:
+    """Of an arch beside a tower: hinges of the arch are told by their side."""
+    arch = blocksim.CircularArch(half_angle_deg=90, eta=0.08, friction=1, voussoirs=7)
+    run = blocksim.simulate(arch, method="direct", duration=0.5)
+    film = Film([tipping(), run], height=300)
+    words = set(map(text_of, film.figure().findobj(Text)))
+    assert {"hinge", "hinge intrados", "hinge extrados"} <= words
 
 
 def text_of(drawn: Any) -> str:

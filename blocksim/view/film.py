@@ -123,8 +123,7 @@ class Film:
         self.slow = slowness(self.seconds) if slow is None else slow
         self._canvas = Canvas(self.width, self.height)
         self._shares = self._drawn_back()
-        states = {state for stage in stages for state in stage.states}
-        self._canvas.keep(*self._still(states, thrust=True))
+        self._canvas.keep(*self._still([set(stage.states) for stage in stages], thrust=True))
         self._last: tuple[float, NDArray[np.uint8]] | None = None
         self.count = 1 + round(rate * (BEFORE + self.seconds * self.slow + AFTER))
 
@@ -157,7 +156,7 @@ class Film:
         """Draw one frame with a legend of what is seen in it."""
         seconds = self._within(self.seconds if at is None else at * self._tick)
         moments = [shot.stage.at(seconds / shot.stage.unit) for shot in self.shots]
-        seen = {state for moment in moments for state in moment.joints}
+        seen = [set(moment.joints) for moment in moments]
         at_rest = any(moment.statics > 0 for moment in moments)
         self._canvas.keep(*self._still(seen, thrust=at_rest))
         self._draw(seconds)
@@ -233,7 +232,7 @@ class Film:
         return [Panel(i * wide, foot, wide, tall) for i in range(count)]
 
     def _still(
-        self, states: set[JointState], *, thrust: bool
+        self, states: Sequence[set[JointState]], *, thrust: bool
     ) -> tuple[list[Part], list[Label]]:
         """Return what stays the same: surroundings, scale bars, words and legend."""
         parts: list[Part] = []
@@ -276,11 +275,17 @@ class Film:
         x = 48 * self._size + width_of(self._clock(self.seconds), 19 * self._size, bold=True)
         return Label(x, 15 * self._size, words, size=14 * self._size, colour=QUIET)
 
-    def _entries(self, states: set[JointState], *, thrust: bool) -> list[tuple[str, str]]:
-        """Return words and colours of what occurs."""
+    def _entries(
+        self, states: Sequence[set[JointState]], *, thrust: bool
+    ) -> list[tuple[str, str]]:
+        """Return words and colours of what occurs, by what joints of each recording do."""
         stages = [shot.stage for shot in self.shots]
-        is_arch = all(stage.is_arch for stage in stages)
-        told = [words_of(state, is_arch=is_arch) for state in JOINTS if state in states]
+        told = [
+            words_of(state, is_arch=stage.is_arch)
+            for state in JOINTS
+            for stage, seen in zip(stages, states, strict=True)
+            if state in seen
+        ]
         if thrust and any(stage.thrust for stage in stages):
             rests = all(stage.carried is None or stage.carried.stands for stage in stages)
             told.append((f"{'' if rests else 'nearest '}line of thrust at rest", THRUST))

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from blocksim.common.version import __version__
+from blocksim.engines import ENGINES
 from blocksim.engines.base import Quality, Settings
 from blocksim.simulation.recording import Recording
 from blocksim.view.acting import Acting
@@ -34,7 +35,7 @@ def solid_figure(answer: Check[SpatialAssembly]) -> Figure:
     rest[:, :3] = assembly.centres / assembly.size
     moved = 0 * rest if rates is None else WAY * rates
     run = Recording(
-        problem=answer.problem, engine=answer.method, engine_version=__version__,
+        problem=answer.problem, engine=answer.method, engine_version=_version(answer.method),
         settings=Settings(step=1.0, sweeps=1, hold_sweeps=1), times=np.array([0.0, 1.0]),
         poses=np.stack([rest, rest + moved]), quality=Quality(),
     )  # fmt: skip
@@ -55,6 +56,11 @@ def solid_figure(answer: Check[SpatialAssembly]) -> Figure:
     whole = Panel(0, 0, WIDE, TALL)
     canvas.draw([(panel, [*view.shapes(moment), *forces, *loads]), (whole, marks)])
     return canvas.figure()
+
+
+def _version(method: str) -> str:
+    """Return the version of an engine's library, or of blocksim for what has none."""
+    return ENGINES[method].version if method in ENGINES else __version__
 
 
 def _forces(answer: Check[SpatialAssembly], view: SpatialView) -> list[Shape]:
