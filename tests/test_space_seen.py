@@ -27,13 +27,16 @@ import blocksim
 from blocksim import JointState, Recording, Settings
 from blocksim.blocks.record import to_record
 from blocksim.report.sheetpage import structure_page
+from blocksim.view.canvas import Panel
 from blocksim.view.film import Film
 from blocksim.view.models import UPRIGHT, mechanism_model, write_model
 from blocksim.view.solidfigure import FOOT, HEAD, TALL, WIDE, solid_figure
 from blocksim.view.solidscene import force_lines, states_at
+from blocksim.view.stage import SolidStage
 from blocksim.view.style import JOINTS, LIVE
 from blocksim.view.turning import turning_page
 from blocksim.view.video import to_bytes
+from blocksim.view.views import SpatialView
 
 
 def tower() -> Any:
@@ -225,6 +228,20 @@ def test_a_page_holds_the_mechanism_and_asks_for_nothing() -> None:
     assert answer.verdict.value == "collapses"
     page = turning_page(answer)
     assert "collapses, by limit" in page
+    # From where pictures look: they show as one point what is on the way to the eye.
+    turned, raised = map(float, re.search(r'orbit="(\S+)deg (\S+)deg auto"', page).groups())  # type: ignore[union-attr]
+    around, down = math.radians(turned), math.radians(raised)
+    level = np.array([math.sin(around), 0.0, math.cos(around)])
+    eye = math.sin(down) * level + [0.0, math.cos(down), 0.0]
+    stage = SolidStage(tipping())
+    view = SpatialView(stage, Panel(0, 0, 900, 900), np.array([[-0.5] * 3, [0.5] * 3]))
+    middle = np.array([stage.middle, (stage.ground + 0.5) / 2, 0.0])
+    here, nearer, right = view.places(
+        middle + 0.1 * np.array([0 * eye, eye, np.cross([0, 1, 0], level)])
+    )
+    assert nearer == pytest.approx(here, abs=0.1)
+    assert right[0] - here[0] > 10
+    assert right[1] == pytest.approx(here[1], abs=0.1)
     model = base64.b64decode(re.search(r"base64,([A-Za-z0-9+/=]+)", page)[1])  # type: ignore[index]
     assert model == mechanism_model(answer)
     document, data = parts_of(model)

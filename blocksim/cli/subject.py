@@ -86,7 +86,8 @@ def anything_asked(
     in_space = found.in_space or spatial
     given_way = pushes or tilts or loading.tilt is not None or loading.push is not None
     beside = "left out, or --tilt or --push beside it"
-    allowed = beside if in_space else "left out: it is of blocks in space"
+    prisms = "prisms are by --spatial of check, bracket and simulate"
+    allowed = beside if in_space else f"left out: it is of blocks in space; {prisms}"
     usable = in_space and given_way
     require(usable or loading.azimuth is None, "--azimuth", loading.azimuth, allowed)
     if not spatial:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ import blocksim
 from blocksim.view.models import mechanism_model
 from blocksim.view.sheet import built_words, title_of
 from blocksim.view.solidscene import told
+from blocksim.view.stage import SolidStage
 from blocksim.view.style import INK, PAPER, QUIET, VERDICTS
 from blocksim.view.templates import template_of
 
@@ -26,12 +28,15 @@ VERSION = "4.4.0"
 def turning_page(answer: Check[SpatialAssembly]) -> str:
     """Return the page as HTML, complete in itself."""
     problem: Problem[Any] = answer.problem
+    turned, raised = map(math.degrees, SolidStage.eye)
     return template_of("blocksim.view.turning", "page.html").render(
         title=title_of(problem),
         verdict=f"{answer.verdict.value}, by {answer.method}",
         about=", ".join(built_words(problem)),
         model=base64.b64encode(mechanism_model(answer)).decode(),
         told=told(each.state for each in answer.joints),
+        # As pictures are seen: about the vertical from the front, and from the zenith.
+        orbit=f"{turned:g}deg {90 - raised:g}deg",
         moves=answer.mechanism is not None,
         tone=VERDICTS[answer.verdict],
         paper=PAPER,
