@@ -275,7 +275,9 @@ def test_what_is_thrown_is_known_as_long_as_it_flies() -> None:
 
 
 @pytest.mark.parametrize("engine", ["direct", "pymunk"])
-@pytest.mark.parametrize(("gap", "speed"), [(0.2, 2.7), (0.23, 0.61), (0.289, 2.43)])
+@pytest.mark.parametrize(
+    ("gap", "speed"), [(0.2, 2.7), (0.23, 0.61), (0.289, 2.43), (0.2, 90.0)]
+)
 def test_a_thrown_block_hits_another_when_it_is_there(
     engine: str, gap: float, speed: float
 ) -> None:

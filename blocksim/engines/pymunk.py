@@ -24,6 +24,8 @@ SWEEPS = 100
 LEAST_SWEEPS = 5
 RUBBLE_SWEEPS, MOST_PARTS = 100, 100
 """Least sweeps, and most parts of a step, once blocks may meet."""
+COARSEST = 60
+"""Parts in one in which nothing passes another: it goes by a quarter of its least extent."""
 LEAST_AGAIN, MOST_AGAIN = 100, 400
 """Sweeps of a step on ground that shakes: at least, and at most for each pair of blocks."""
 CHANGE = 1e-2
@@ -167,7 +169,8 @@ class _World:
         """Take steps of blocks that may meet as one, in parts."""
         space, step = self._space, steps * self._settings.step
         way = (self._speed() + step) * step * self._finer
-        parts = min(math.ceil(way / space.solids.largest), MOST_PARTS)
+        fine = way / space.solids.largest
+        parts = math.ceil(max(min(fine, MOST_PARTS), fine / COARSEST))
         parts = max(parts, steps * SHAKEN_PARTS) if self._shaken else parts
         part = step / parts
         # Velocities are those half a step ahead: what has been gained by then is less now.
@@ -231,6 +234,10 @@ class _World:
         # Its velocities are those half a step ahead.
         space.set_velocities(later(velocities, self._rate, part / 2))
         self._starts, self._time = np.zeros_like(velocities), 0.0
+        if self._speed() * self._settings.step > space.solids.left:
+            # They may be past others at the end of the first step.
+            space.make_solid()
+            self._last = part
 
     def poses(self) -> Array:
         """Return centres of mass and rotations."""
