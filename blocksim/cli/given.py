@@ -31,7 +31,7 @@ PARAMETERS = {"alpha": "half_angle_deg"}
 LARGEST_FRICTION = 10.0
 """Coefficient above which, up to 90, one is taken for an angle."""
 
-MU = option("Friction coefficient, above 0; inf allowed.")
+MU = option("Friction coefficient, 0 or more (above 0 with --alpha or --span); inf allowed.")
 DEPTH = option("Depth out of the plane in m; 1 if left out.")
 TOLERANCE = option(
     "Mortar joints, gaps and overlaps of a drawing up to this are closed, in m; "
