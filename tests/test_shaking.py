@@ -298,3 +298,11 @@ def test_the_share_that_falls_is_that_of_pulses_long_enough_and_a_folder_keeps_i
 def test_amplitudes_have_to_grow() -> None:
     with pytest.raises(InputError, match="growing"):
         fragility(structure_of(scenes(NAME)[0]), {"a": pulse(1.0)}, [0.2, 0.1])
+
+
+def test_a_block_that_rolls_onto_its_foot_again_has_fallen() -> None:
+    """Housner's equation overturns it; it goes round once and stands still, 8 m away."""
+    problem = on_pulse(block(1.0, 2.0, 3.0), "half-sine", 2.400149081624057, 1.488760602650338)
+    seen = check(problem, method="direct")
+    assert seen.shaken.rocking.rotation > 2 * math.pi
+    assert seen.verdict is Verdict.COLLAPSES

@@ -233,7 +233,7 @@ def _simulated(
     return answer, seen
 
 
-def _by_shaking(problem: Problem, chosen: Method, given: Taken) -> _Found:
+def _by_shaking(problem: Problem[Any], chosen: Method, given: Taken) -> _Found:
     """Answer what became of blocks on ground that shakes, or that begin in motion."""
     from blocksim.simulation.shaken import shake
 
@@ -243,7 +243,7 @@ def _by_shaking(problem: Problem, chosen: Method, given: Taken) -> _Found:
         verdict=seen.verdict,
         evidence=(Evidence("shaking" if problem.shaking else "motion", seen.reason),),
         problem=problem,
-        joints=closed_joints(problem.assembly.joint_angles),
+        joints=observed(problem, None),
         shaken=seen,
         simulated=float(seen.recording.times[-1]),
         state_hash=seen.recording.state_hash,

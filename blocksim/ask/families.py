@@ -121,12 +121,10 @@ def families_of(problem: Problem[Any]) -> tuple[str, ...]:
     """Names of the parameters there are: of any problem, of its shaking, and of its kind."""
     kind = problem.maker
     own = () if kind is None else kind.bracketed
-    if problem.in_space:
-        return (*IN_SPACE, *own)
-    if not problem.is_planar:
-        return (*IN_SPACE, "lean", *own)
-    still = {"amplitude", "duration"} if problem.shaking is None else set[str]()
-    return (*(name for name in FAMILIES if name not in still), *own)
+    still = SHAKES if problem.shaking is None else ()
+    known = IN_SPACE if problem.in_space or not problem.is_planar else FAMILIES
+    aside = () if problem.in_space or problem.is_planar else ("lean",)
+    return (*(name for name in known if name not in still), *aside, *own)
 
 
 def _over_load(problem: Problem[Any]) -> Family[Any]:
@@ -269,7 +267,8 @@ FAMILIES: dict[str, Callable[[Any], Family[Any]]] = {
     "amplitude": partial(_over_shaking, name="amplitude"),
     "duration": partial(_over_shaking, name="duration"),
 }
-IN_SPACE = ("load", "tilt", "mu", "push")
+SHAKES = ("amplitude", "duration")
+IN_SPACE = ("load", "tilt", "mu", "push", *SHAKES)
 """Those that problems in space have."""
 
 

@@ -151,9 +151,9 @@ def _beyond(method: Method, problem: Problem[Any] | None) -> str:
     """Say what is allowed where a problem is beyond a method; empty where it is not."""
     if problem is None:
         return ""
-    if problem.in_space:
-        if method.name == "limit" or (isinstance(method, Engine) and method.build_in_space):
-            return ""
+    if problem.in_space and not (
+        method.name == "limit" or (isinstance(method, Engine) and method.build_in_space)
+    ):
         able = ", ".join(each.name for each in _shipped() if each.build_in_space)
         return f"one of limit, {able}: {method.name} knows no blocks in space"
     if problem.strength is not None and method.name != "limit":
@@ -161,7 +161,8 @@ def _beyond(method: Method, problem: Problem[Any] | None) -> str:
     if bears(problem) and method.name != "limit":
         return f"limit, or no --fill-passive: soil in {method.name} gives way to nothing"
     if problem.is_moving and not (isinstance(method, Engine) and method.shakes):
-        able = ", ".join(each.name for each in _shipped() if each.shakes)
+        known = (each for each in _shipped() if each.build_in_space or not problem.in_space)
+        able = ", ".join(each.name for each in known if each.shakes)
         what = "ground that shakes" if problem.shaking else "blocks that begin in motion"
         return f"one of {able}: {method.name} knows no {what}"
     offered = offers_of(problem) if method.name == "theory" else None

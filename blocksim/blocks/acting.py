@@ -63,6 +63,14 @@ def sideways(problem: Problem[Any]) -> Array:
     return np.array([1.0, 0.0])
 
 
+def shaking_words(problem: Problem[Any]) -> str:
+    """Say how the ground shakes; empty where it does not."""
+    if problem.shaking is None:
+        return ""
+    way = round(math.degrees(problem.azimuth), 9)
+    return problem.shaking.words + (f" towards {way:g} deg from x" if problem.in_space else "")
+
+
 def with_push(problem: Problem[Blocks], across: float) -> Problem[Blocks]:
     """Return a problem pushed across besides, by a share of the weight of each block [g]."""
     push = push_on_all(problem, across * sideways(problem))

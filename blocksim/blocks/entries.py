@@ -155,6 +155,7 @@ class ShakeEntry(Written):
     `times_s`: Times of a record [s], growing.
     `accelerations_g`: The acceleration across at each of them [g].
     `verticals_g`: The acceleration upwards at each of them [g]; by default none.
+    `azimuth_deg`: In space: towards where across is, from x towards y; by default x.
     """
 
     shape: str | None = None
@@ -163,6 +164,7 @@ class ShakeEntry(Written):
     times_s: Annotated[list[Number], Field(max_length=MOST_ROWS)] | None = None
     accelerations_g: Annotated[list[Number], Field(max_length=MOST_ROWS)] | None = None
     verticals_g: Annotated[list[Number], Field(max_length=MOST_ROWS)] | None = None
+    azimuth_deg: Annotated[float, TURN] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -199,6 +201,7 @@ class Said(Written):
     source: Annotated[str, Field(max_length=500, strict=True)] = ""
     density: Density | None = None
     load: Times = 0.0
+    shake: ShakeEntry | None = None
     notes: Annotated[tuple[Note, ...], Field(max_length=MOST_NOTES)] = ()
     expect: Annotated[tuple[ExpectEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     quick: Annotated[bool, Field(strict=True)] = False
@@ -233,7 +236,6 @@ class Around(Said):
     dead: Annotated[list[LoadEntry], Field(max_length=MOST_BLOCKS)] | None = None
     live: Annotated[tuple[LoadEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     move: Annotated[tuple[MoveEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
-    shake: ShakeEntry | None = None
     size: Length | None = None
 
 

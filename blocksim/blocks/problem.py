@@ -11,6 +11,7 @@ import numpy as np
 
 from blocksim.blocks.acting import Load as Load
 from blocksim.blocks.acting import Move as Move
+from blocksim.blocks.acting import sideways
 from blocksim.blocks.assembly import STANDARD_GRAVITY as STANDARD_GRAVITY
 from blocksim.blocks.assembly import Array, Blocks, frozen
 from blocksim.blocks.dispersal import Dispersal
@@ -39,7 +40,6 @@ ROUNDED = 1e-15
 """Part of gravity along the axis of a table that rounding may leave."""
 PLANE_ONLY = {
     "moves": "supports stay",
-    "shaking": "the ground is at rest",
     "velocities": "blocks begin at rest",
     "strength": "blocks are rigid",
     **dict.fromkeys(("road", "dispersal"), "there is no road"),
@@ -69,8 +69,8 @@ class Problem(Shown, Generic[Blocks]):
     load : float
         The load factor.
     moves : tuple of Move
-        How supports move. This, shaking, velocities, strength, road, dispersal and soil are of
-        the plane.
+        How supports move. This, velocities, strength, road, dispersal and soil are of the
+        plane.
     shaking : Shaking or None
         How the ground shakes from the release on.
     velocities : (blocks, 3) float
@@ -80,7 +80,7 @@ class Problem(Shown, Generic[Blocks]):
     maker : Kind or None
         What made it, with its parameters; None where its blocks were given.
     azimuth : float
-        In space: towards where a table tilts, from x towards y [rad].
+        In space: towards where a table tilts and the ground shakes, from x towards y [rad].
     road : tuple of (float, float, float)
         Live loads on the road above, which stay where they are as blocks are made otherwise:
         from one x to another [m], and the weight [N].
@@ -314,7 +314,10 @@ class Problem(Shown, Generic[Blocks]):
             return self.gravity
         unit = self.seconds
         gained = self.shaking.gained(start * unit, end * unit)
-        return self.gravity - [*gained / ((end - start) * unit), 0.0]
+        across, up = (gained / ((end - start) * unit)).tolist()
+        ground = -up * np.array(self.assembly.down)
+        ground[: self.assembly.dimensions] += across * sideways(self)
+        return self.gravity - ground
 
     def applied_forces(self, poses: Array | None = None) -> Array:
         """Sum gravity, dead and live loads on each block, and their moments about its centre.

@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
-from blocksim.blocks.entries import Around, StructureFile
+from blocksim.blocks.entries import Around, ShakeEntry, StructureFile
 from blocksim.blocks.given import GivenJoint
 from blocksim.blocks.loads import LoadsOf, Names, acting_of, given_joints, named_blocks
 from blocksim.blocks.outlines import counter_clockwise
 from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Move, Problem
 from blocksim.blocks.rows import column
-from blocksim.blocks.shaking import shaking_of, shaking_record
+from blocksim.blocks.shaking import Shaking, shaking_of, shaking_record
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.common.checks import endless_text, require
 from blocksim.common.errors import MISSING, InputError
@@ -121,11 +121,20 @@ def problem_of(
     return replace(
         acts.on(assembly, mu),
         moves=_moves(written, bodies),
-        shaking=None if written.shake is None else shaking_of(written.shake),
+        shaking=_shaking(written.shake),
         weighed=written.density is not None
         or all(body.fixed or body.weight is not None for body in bodies),
         notes=(*written.notes, *acts.notes, *found),
     )
+
+
+def _shaking(said: ShakeEntry | None) -> Shaking | None:
+    """Return how the ground shakes, across in the plane."""
+    if said is None:
+        return None
+    allowed = "left out in the plane"
+    require(said.azimuth_deg is None, "shake.azimuth_deg", said.azimuth_deg, allowed)
+    return shaking_of(said)
 
 
 def _moves(written: Around, bodies: Sequence[Body]) -> tuple[Move, ...]:
@@ -192,6 +201,7 @@ def record_of(
         a, b = (on if side == SUPPORT else names[side] for side in sides)
         own = {} if each.friction is None else {"friction": endless_text(each.friction)}
         joints.append({"a": a, "b": b, **joint(each), **own})
+    shake = shake_record(problem)
     return {
         "title": problem.title,
         "source": problem.source,
@@ -207,7 +217,16 @@ def record_of(
             *(each for load in problem.dead for each in load_record(load, names)),
         ],
         "live": [each for load in problem.live for each in load_record(load, names)],
+        **({} if shake is None else {"shake": shake}),
     }
+
+
+def shake_record(problem: Problem[Any]) -> dict[str, Any] | None:
+    """Return what a structure file says of ground that shakes, in space with its direction."""
+    if problem.shaking is None:
+        return None
+    said = shaking_record(problem.shaking)
+    return {**said, "azimuth_deg": math.degrees(problem.azimuth)} if problem.in_space else said
 
 
 def structure_record(problem: Problem) -> dict[str, Any]:
@@ -229,12 +248,11 @@ def structure_record(problem: Problem) -> dict[str, Any]:
             problem,
             block=lambda at: _block_record(problem, at, free=at not in touched),
             bed=lambda bed: {"polygons": [each.tolist() for each in bed.polygons]},
-            ground=_ground,
+            ground=lambda at: behind(at).tolist(),
             joint=_joint_record,
         ),
         "size": assembly.size,
         "move": moves,
-        **({} if problem.shaking is None else {"shake": shaking_record(problem.shaking)}),
     }
 
 
@@ -248,11 +266,11 @@ def ids_of(assembly: Assembly | SpatialAssembly) -> tuple[list[str], list[str]]:
     return [f"b{at}" for at in range(len(blocks))], [f"s{at}" for at in range(len(beds))]
 
 
-def _ground(joint: Joint) -> list[list[float]]:
-    """Return the corners of a flat triangle behind a joint with the ground."""
+def behind(joint: Joint) -> Array:
+    """Return the corners of a flat triangle behind a joint with the ground, (3, 2) [m]."""
     out = joint.normal * (-1 if joint.before == SUPPORT else 1) * joint.length / 10
     corners = np.stack([joint.inner, joint.outer, (joint.inner + joint.outer) / 2 + out])
-    return counter_clockwise(corners).tolist()
+    return counter_clockwise(corners)
 
 
 def _block_record(problem: Problem, at: int, *, free: bool) -> dict[str, Any]:

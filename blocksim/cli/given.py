@@ -225,8 +225,8 @@ class Loading:
         "Tilt of the table in the plane, in degrees: its right side goes down.", range=TILT_DEG
     )
     azimuth: float | None = option(
-        "Beside --tilt or --push, of blocks in space: towards where, in degrees from x "
-        "towards y; 0 if left out.",
+        "Beside --tilt, --push or --shake, of blocks in space: towards where, in degrees "
+        "from x towards y; 0 if left out.",
         range=TILT_DEG,
     )
     gravity: float | None = option(

@@ -28,7 +28,8 @@ from blocksim.kinds.circular import LEAST_DENSITY, CircularArch
 from blocksim.limit.crushing import require_sizes
 
 IN_SPACE = {"parameters", "mu", "friction_angle", "unit_weight", "tolerance", "unit", "layer",
-            "load", "push", "tilt", "azimuth", "gravity"}  # fmt: skip
+            "load", "push", "tilt", "azimuth", "gravity", "shake", "amplitude",
+            "duration"}  # fmt: skip
 """Options that mean something in space."""
 
 
@@ -36,7 +37,8 @@ def loaded(problem: Problem[Any], given: Given, loading: Loading) -> Problem[Any
     """Put on a problem what the options say: friction, load, tilt, lean."""
     if problem.in_space:
         refuse({**asdict(given), **asdict(loading)}, IN_SPACE | given.sizes.keys())
-        problem = replace(problem, azimuth=math.radians(loading.azimuth or 0.0))
+        if loading.azimuth is not None:
+            problem = replace(problem, azimuth=math.radians(loading.azimuth))
     with named_options():
         if given.friction is not None:
             problem = problem.with_friction(given.friction)

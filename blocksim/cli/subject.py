@@ -84,8 +84,9 @@ def anything_asked(
         require_given(**needed)
         found = structure(asked.scene, given, acting)
     in_space = found.in_space or spatial
-    given_way = pushes or tilts or loading.tilt is not None or loading.push is not None
-    beside = "left out, or --tilt or --push beside it"
+    ways = loading.tilt, loading.push, found.shaking
+    given_way = pushes or tilts or any(each is not None for each in ways)
+    beside = "left out, or --tilt, --push or --shake beside it"
     prisms = "prisms are by --spatial of check, bracket and simulate"
     allowed = beside if in_space else f"left out: it is of blocks in space; {prisms}"
     usable = in_space and given_way
@@ -103,7 +104,8 @@ def anything_asked(
         require_upright(found, name, turn)
     with named_options():
         made = found if found.in_space else extruded(found)
-    made = replace(made, azimuth=math.radians(loading.azimuth or 0.0))
+    if loading.azimuth is not None:
+        made = replace(made, azimuth=math.radians(loading.azimuth))
     if late and loading.tilt:
         made = made.tilted(math.radians(loading.tilt))
     if late and loading.push is not None:

@@ -231,7 +231,8 @@ class Engine(Method):
         `TakesForces`; None where it moves none there.
     `most_friction`, `most_friction_in_space`: Friction above which the engine takes this
         instead.
-    `shakes`: Whether its ground can shake, and blocks may begin in motion (`TakesVelocities`).
+    `shakes`: Whether its ground can shake, in space too if it moves blocks there, and blocks of
+        the plane may begin in motion (`TakesVelocities`).
     `finds_rest`: Whether rest is found wherever it is possible, from any beginning.
     `takes_forces`, `tells_forces`: Whether its worlds are also `TakesForces` and `TellsForces`.
         Fewer blocks than all ask for the second.

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -22,7 +21,6 @@ from blocksim.common.checks import require
 from blocksim.common.version import __version__
 from blocksim.engines.base import Engine, Quality, Settings, World
 from blocksim.engines.energy import Balance, energy
-from blocksim.engines.placed import BEGINS
 from blocksim.engines.solid import MOST_FRICTION
 from blocksim.engines.stepping import LEAST, RESIDUAL, Stepping
 
@@ -107,21 +105,6 @@ class Blocks(Stepping):
                 self._set_off(step, before)
             left -= step
         self._balance.look(self._poses, self._velocities, self._velocities)
-
-    def _set_off(self, step: float, before: dict[str, Any]) -> None:
-        """Take a step in which blocks at rest begin to move, from when they do on."""
-        rests, moves = 0.0, step
-        while moves - rests > BEGINS * self._step:
-            middle = (rests + moves) / 2
-            vars(self).update(before)
-            self._move(middle)
-            rests, moves = (middle, moves) if self._is_at_rest else (rests, middle)
-        vars(self).update(before)
-        if rests:
-            self._move(rests)
-        self._sets_off = True
-        self._move(step - rests)
-        self._sets_off = False
 
     def _suits(self, left: float) -> float:
         """Return how long a step may be, of what is left."""

@@ -12,19 +12,16 @@ from blocksim.blocks.problem import Problem
 from blocksim.engines.contact.geometry import Touch
 from blocksim.engines.contact.neighbours import Neighbours
 from blocksim.engines.contact.solver import ContactProblem, Solution
+from blocksim.engines.shaken import OnGround
 
 DEEPEST = 1e-3
 """Overlap that is pushed apart at once, over how far the corners of the smaller block are from
 its centre."""
-AT_REST = 1e-9
-"""Velocity of blocks at rest [sqrt(size g)]."""
-BEGINS = 1 / 32
-"""Share of a step to which the moment is known at which blocks begin to move."""
 NO_GUESS: tuple[NDArray[np.int64] | None, Solution | None] = None, None
 """Pairs, and what their contacts do, where no more is known than of the last step."""
 
 
-class Placed:
+class Placed(OnGround):
     """Poses and velocities of blocks, their contacts, and what is known of them."""
 
     def __init__(self, problem: Problem) -> None:
@@ -48,14 +45,9 @@ class Placed:
         self._residual = 0.0
 
     def _speeds(self) -> Array:
-        """Return the largest velocity of each block's corners, at most, shape (blocks,)."""
+        """Return the largest velocity of each block's corners, at most, (blocks,)."""
         speed: Array = np.hypot(*self._velocities[:, :2].T)
         return speed + np.abs(self._velocities[:, 2]) * self._reach
-
-    @property
-    def _is_at_rest(self) -> bool:
-        """Whether no block moves."""
-        return float(self._speeds().max()) < AT_REST
 
     def _drive(self, step: float) -> None:
         """Set the velocities of what is moved; here nothing is."""
@@ -66,16 +58,9 @@ class Placed:
             self._free = self._asked.applied_forces(self._looked) / self._mass
 
     def _shake(self, step: float) -> None:
-        """Add what the ground's acceleration does in a step to the accelerations.
-
-        By that at its end it is seen whether blocks at rest begin to move: by the mean of the
-        step they might not, and begin too late. Where they rest at both ends they rest between.
-        """
+        """Add what the ground's acceleration does in a step to the accelerations."""
         if self._asked.shaking is not None:
-            start, self._time = self._time, self._time + step
-            if self._is_at_rest and not self._sets_off:
-                start = self._time - BEGINS * step
-            seen = self._asked.shaken(start, self._time) - self._asked.gravity
+            seen = self._gravity_in(step) - self._asked.gravity
             self._free = (self._free if self._turning else self._still).copy()
             self._free[:, :2] += seen[:2]
 

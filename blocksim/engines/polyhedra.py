@@ -110,8 +110,7 @@ class Polyhedra:
         if not self.problem.is_loaded:
             return None
         place = self.place(poses)
-        found = self.bodies.pull(place)
-        found[:, :3] -= self.bodies.weights[:, None] * self.problem.gravity
+        found = self.bodies.pull(place, np.zeros(3))
         found[:, 3:] = np.einsum("bij,bj->bi", place.turns[:-1], found[:, 3:])
         return found
 

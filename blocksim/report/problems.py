@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import At, Line, friction_angle, line_of
-from blocksim.blocks.acting import tilt_and_lean, towards
+from blocksim.blocks.acting import shaking_words, tilt_and_lean, towards
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.road import fill_of
-from blocksim.blocks.shaking import shaking_record
+from blocksim.blocks.structure import shake_record
 from blocksim.common.words import counted
 from blocksim.kinds.circular import LEAST_DENSITY, CircularArch
 
@@ -41,7 +41,7 @@ def problem_record(problem: Problem[Any], over: str | None = None) -> ProblemRec
     """Return a problem for answers. What follows from the searched parameter is null."""
     spatial = problem.in_space
     arch, fill, spread = weighed_arch(problem), fill_of(problem), problem.dispersal
-    shaking, (tilt, lean) = problem.shaking, tilt_and_lean(problem)
+    tilt, lean = tilt_and_lean(problem)
     said: dict[str, object] = {
         "title": problem.title,
         "blocks": len(problem.assembly.blocks),
@@ -54,7 +54,7 @@ def problem_record(problem: Problem[Any], over: str | None = None) -> ProblemRec
         "gravity_m_s2": (problem.gravity * STANDARD_GRAVITY).tolist(),
         "load": problem.load,
         "strength_MPa": None if problem.strength is None else problem.strength / 1e6,
-        "shake": None if shaking is None else shaking_record(shaking),
+        "shake": shake_record(problem),
         **(dict.fromkeys(SIZES) if arch is None else size_record(arch)),
         "weight_kN": weight_of(problem) / 1000,
         "fill_m": None if fill is None else fill.height,
@@ -197,7 +197,7 @@ def described(problem: Problem[Any]) -> str:
     if problem.strength is not None:
         said.append(f"strength {problem.strength / 1e6:g} MPa")
     if problem.shaking is not None:
-        said.append(problem.shaking.words)
+        said.append(shaking_words(problem))
     return ", ".join(said)
 
 

@@ -10,6 +10,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from blocksim.blocks.acting import shaking_words
 from blocksim.blocks.assembly import SUPPORT, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.record import to_record
@@ -183,7 +184,7 @@ def recording_lines(recording: Recording, unit: str) -> list[str]:
     kept, rocking, problem = recording.quality, rocking_of(recording), recording.problem
     said: list[str] = []
     if problem.shaking is not None:
-        said.append(problem.shaking.words)
+        said.append(shaking_words(problem))
     if rocking.rotation >= LEAST_ROTATION:
         name = problem.assembly.blocks[rocking.block].name or str(rocking.block)
         said.append(f"block {name} turned by {math.degrees(rocking.rotation):.3g} deg at most")

@@ -9,7 +9,7 @@ import numpy as np
 
 from blocksim.arch.answers import ArchAnswer
 from blocksim.ask.check import Check
-from blocksim.blocks.acting import push_of, tilt_and_lean, towards
+from blocksim.blocks.acting import push_of, shaking_words, tilt_and_lean, towards
 from blocksim.blocks.joints import joint_names
 from blocksim.blocks.maker import Kind, Table
 from blocksim.blocks.problem import Problem
@@ -178,7 +178,7 @@ def load_words(problem: Problem[Any]) -> list[str]:
             where = f"towards {towards(problem):.4g}° from x"
         words.append(f"Gravity is tilted by {tilt:.4g}° {where}.")
     if problem.shaking is not None:
-        words.append(f"The ground shakes: {problem.shaking.words}.")
+        words.append(f"The {shaking_words(problem)}.")
     return words
 
 

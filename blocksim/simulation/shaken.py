@@ -1,7 +1,7 @@
 """Blocks on ground that shakes: recorded until they lie still, and what became of them.
 
 - *stands*: they lie still after the shaking, and every joint still is one: its faces lie
-  over each other, nearly parallel, and touch;
+  over each other, nearly parallel, and touch, and have never looked away from each other;
 - *collapses*: they lie still and a joint is none any more, or a block has sunk by `SUNK`;
 - *undecided*: they still move when the time is over, or end otherwise at half the step, or
   fall though forces of equilibrium exist at any time.
@@ -21,9 +21,11 @@ from typing import Any, cast
 
 import numpy as np
 
-from blocksim.blocks.acting import with_push
+from blocksim.blocks.acting import sideways, with_push
 from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.blocks.space.parting import joined, turned_over
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Engine, TakesForces, TakesVelocities, World, trusted
 from blocksim.engines.contact.geometry import Geometry
@@ -42,6 +44,8 @@ LONGEST = 200.0
 """Time after the shaking at which blocks that still move are given up [sqrt(size/g)]."""
 APART = 0.01
 """Gap across a joint from which its blocks do not touch [size]."""
+OVER = math.pi / 2
+"""Turn of a joint's blocks against each other beyond which its faces look apart."""
 MAY_REST = "they can rest all the same: forces of equilibrium exist at any time"
 PARTS = 8
 """Parts of a step, to which times of frames are the same in runs at other steps."""
@@ -58,7 +62,7 @@ class Shaken:
     reason: str
     rocking: Rocking
     moved: float
-    recording: Recording
+    recording: Recording[Any]
 
     @property
     def first_impact_s(self) -> float | None:
@@ -68,7 +72,7 @@ class Shaken:
 
 
 def shake(
-    problem: Problem,
+    problem: Problem[Any],
     engine: str | Engine,
     *,
     until: float | None = None,
@@ -119,7 +123,7 @@ def shake(
     return replace(seen, reason=seen.reason + given_words(settings))
 
 
-def may_rest(problem: Problem) -> bool:
+def may_rest(problem: Problem[Any]) -> bool:
     """Tell whether forces of equilibrium exist at any time while the ground shakes sideways.
 
     They do if they exist at both ends of its acceleration: each mean of two such sets of forces
@@ -131,14 +135,14 @@ def may_rest(problem: Problem) -> bool:
     return all(equilibrium(_pushed(problem, each)).exists for each in shaking.across)
 
 
-def _is_known(problem: Problem) -> bool:
+def _is_known(problem: Problem[Any]) -> bool:
     """Tell whether limit analysis can be asked for forces while the ground shakes."""
     shaking = problem.shaking
     known = shaking is not None and not shaking.is_vertical and not len(problem.velocities)
     return known and replace(problem, shaking=None).has_statics
 
 
-def _pushed(problem: Problem, across: float) -> Problem:
+def _pushed(problem: Problem[Any], across: float) -> Problem:
     """Return a problem at a moment at which its ground accelerates by so much across [g]."""
     return replace(with_push(problem, -across), shaking=None)
 
@@ -152,14 +156,15 @@ def _begin(world: World, simulation: Simulation[Any]) -> None:
     problem, step = simulation.taken, simulation.settings.step
     if not simulation.engine.takes_forces or not _is_known(problem):
         return
-    across = float((problem.gravity - problem.shaken(0.0, step))[0])
+    seen = (problem.gravity - problem.shaken(0.0, step))[: problem.assembly.dimensions]
+    across = float(seen @ sideways(problem))
     forces = equilibrium(_pushed(problem, across)).forces
     if forces is not None:
         cast("TakesForces", world).begin(forces)
 
 
 def _once(
-    problem: Problem,
+    problem: Problem[Any],
     engine: str | Engine,
     stride: int,
     *,
@@ -186,7 +191,7 @@ def _once(
         poses.append(world.poses())
         if times[-1] > shaken and lie_still(assembly, poses):
             break
-        if not whole and _sunk(poses) > SUNK:
+        if not whole and _sunk(assembly, poses) > SUNK:
             break
         progress(min(1.0, times[-1] / end), "shaking")
     quality = world.quality()
@@ -239,33 +244,43 @@ def _beside(fine: Shaken, others: list[Shaken]) -> tuple[Shaken, bool]:
     return replace(found, reason=words), differs
 
 
-def outcome(recording: Recording) -> tuple[Verdict, str]:
+def outcome(recording: Recording[Any]) -> tuple[Verdict, str]:
     """Tell from the poses what became of blocks on ground that shook, and in words why."""
     poses, problem = list(recording.poses), recording.problem
     over = problem.shaking.duration / problem.seconds if problem.shaking else 0.0
     if recording.times[-1] > over and lie_still(problem.assembly, poses):
-        ended = _ended(problem.assembly, poses[-1])
+        ended = _ended(recording)
         if ended:
             return Verdict.COLLAPSES, f"lies still; joints that are none any more: {ended}"
         return Verdict.STANDS, "it lies still in the end, and all joints are closed"
-    sunk = _sunk(poses)
+    sunk = _sunk(problem.assembly, poses)
     if sunk > SUNK:
         return Verdict.COLLAPSES, f"a block sank by {sunk * problem.assembly.size:.2g} m"
     return Verdict.UNDECIDED, "still moves when the time is over"
 
 
-def _ended(assembly: Assembly, poses: Array) -> int:
-    """Count the joints that are none any more."""
-    touch, holds = Geometry(assembly).touch(poses)
-    return int((~holds | (touch.gap.min(axis=1) > APART)).sum())
+def _ended(recording: Recording[Any]) -> int:
+    """Count the joints that are none any more, or have turned over on the way.
+
+    A block may roll until it lies on the same face again.
+    """
+    assembly, poses = recording.assembly, recording.poses
+    if recording.problem.in_space:
+        return int((~joined(assembly, poses[-1], APART) | turned_over(assembly, poses)).sum())
+    touch, holds = Geometry(assembly).touch(poses[-1])
+    turned = np.pad(poses[:, :, 2] - poses[0, :, 2], ((0, 0), (0, 1)))
+    before, after = assembly.sides
+    over = (np.abs(turned[:, after] - turned[:, before]) > OVER).any(axis=0)
+    return int((~holds | (touch.gap.min(axis=1) > APART) | over).sum())
 
 
-def _sunk(poses: list[Array]) -> float:
+def _sunk(assembly: Assembly | SpatialAssembly, poses: list[Array]) -> float:
     """How far a block's centre has sunk at most."""
-    return float((poses[0][:, 1] - poses[-1][:, 1]).max())
+    height = assembly.dimensions - 1
+    return float((poses[0][:, height] - poses[-1][:, height]).max())
 
 
-def _words(what: str, recording: Recording, rocking: Rocking) -> str:
+def _words(what: str, recording: Recording[Any], rocking: Rocking) -> str:
     """Say what was seen."""
     seconds, assembly = recording.problem.seconds, recording.assembly
     name = assembly.blocks[rocking.block].name or str(rocking.block)

@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from blocksim.blocks.acting import push_of, tilt_and_lean, towards
+from blocksim.blocks.acting import push_of, shaking_words, tilt_and_lean, towards
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
@@ -94,7 +94,7 @@ def loading_words(problem: Problem[Any]) -> list[str]:
     if problem.live and problem.load:
         words.append(f"load factor {problem.load:.4g}")
     if problem.shaking is not None:
-        words.append(problem.shaking.words)
+        words.append(shaking_words(problem))
     return words
 
 

@@ -5,6 +5,7 @@ Lengths in m, forces in N, z upwards.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Annotated, Any, cast
@@ -26,6 +27,7 @@ from blocksim.blocks.entries import (
 )
 from blocksim.blocks.loads import LoadsOf, acting_of, given_joints, named_blocks
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.shaking import shaking_of
 from blocksim.blocks.space.assembly import FaceJoint, Solid, SolidBlock, SpatialAssembly
 from blocksim.blocks.space.joining import MOST_SOLIDS, assembly_in_space
 from blocksim.blocks.space.polyhedron import frame
@@ -166,7 +168,11 @@ def problem_of_solids(
     `solids`: Of which the assembly was made, each with a name of its own.
     """
     acts = acting_of(written, LoadsOf(solids, SPACE), np.array(SpatialAssembly.down))
-    return acts.on(assembly, written.friction)
+    made = acts.on(assembly, written.friction)
+    if (shake := written.shake) is None:
+        return made
+    turn = math.radians(shake.azimuth_deg or 0.0)
+    return replace(made, shaking=shaking_of(shake), azimuth=turn)
 
 
 def _solids(written: SpatialFile) -> list[Solid]:

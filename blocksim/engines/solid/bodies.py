@@ -71,10 +71,10 @@ class Bodies:
                 )
         return found
 
-    def pull(self, place: Place) -> Array:
+    def pull(self, place: Place, gravity: Array) -> Array:
         """Return gravity and loads: forces in space, moments in frames, (blocks, 6)."""
         found = np.zeros_like(self.inertia)
-        found[:, :3] = self.weights[:, None] * self.problem.gravity
+        found[:, :3] = self.weights[:, None] * gravity
         for index, force, arm in self._loads:
             found[index, :3] += force
             found[index, 3:] += np.cross(arm, place.turns[index].T @ force)

@@ -21,6 +21,7 @@ from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.blocks.space.points import JointPoints
 from blocksim.engines.base import Quality, Settings
 from blocksim.engines.energy import Balance
+from blocksim.engines.shaken import OnGround
 from blocksim.engines.solid import MOST_FRICTION
 from blocksim.engines.solid.between import DrawnApart, FrictionBetween, body_of
 from blocksim.engines.solid.bodies import Bodies, Place
@@ -71,14 +72,15 @@ class Found(NamedTuple):
     overlap: float
 
 
-class SolidBlocks:
+class SolidBlocks(OnGround):
     """Blocks in space, their poses and velocities: a world of `engines/base.py`.
 
     Poses are x, y, z in units of the size, then rotation vectors since they were built.
     """
 
     def __init__(self, problem: Problem[SpatialAssembly], settings: Settings) -> None:
-        self._step = settings.step
+        self._asked, self._gravity = problem, problem.gravity
+        self._step, self._time, self._sets_off = settings.step, 0.0, False
         self.bodies = bodies = Bodies(problem)
         self._contacts = JointPoints(problem)
         self._place, self._velocities = self.bodies.built, np.zeros_like(self.bodies.inertia)
@@ -114,7 +116,11 @@ class SolidBlocks:
     def advance(self, steps: int) -> None:
         """Let the blocks move."""
         for _ in range(steps):
+            before = vars(self).copy()
+            rested = self._asked.shaking is not None and self._is_at_rest
             self._move(self._step)
+            if rested and not self._is_at_rest:
+                self._set_off(self._step, before)
             self._balance.look(self._place, self._velocities, self._velocities)
 
     def poses(self) -> Array:
@@ -128,6 +134,11 @@ class SolidBlocks:
             penetration=self._penetration,
             gain=self._balance.gain,
         )
+
+    def _speeds(self) -> Array:
+        """Return the largest velocity of each block's corners, at most, (blocks,)."""
+        speed: Array = np.linalg.norm(self._velocities[:, :3], axis=1)
+        return speed + self.bodies.reach * np.linalg.norm(self._velocities[:, 3:], axis=1)
 
     def _move(self, step: float) -> None:
         """Go on for a time."""
@@ -169,6 +180,7 @@ class SolidBlocks:
 
         That is 1 where nothing closes, and a half where the step is not solved.
         """
+        self._gravity = self._gravity_in(step)
         velocities, speeding = self._velocities, self._speeding
         gain = step * speeding
         middle = self._place.moved(step / 2 * velocities + step / 8 * gain)
@@ -202,7 +214,7 @@ class SolidBlocks:
 
     def _closing(self, step: float) -> None:
         """Take a step of first order: what is open may close, but not pass."""
-        velocities = self._velocities
+        self._gravity, velocities = self._gravity_in(step), self._velocities
         middle = self._place.moved(step / 2 * velocities)
         points, friction, _ = self._points(middle, step)
         gaps = gaps_of(self.bodies, points, middle, self._place)
@@ -234,9 +246,9 @@ class SolidBlocks:
         """Solve a step's contacts, of points that are taken, for the accelerations in it."""
         bodies = self.bodies
         turning = bodies.turning(self._velocities + step / 2 * self._speeding)
-        at = np.flatnonzero(taken)
+        pull, at = bodies.pull(middle, self._gravity), np.flatnonzero(taken)
         asked = bodies.asked(
-            now.rows[at], now.sides[at], drift[at], bodies.pull(middle) + turning, friction[at]
+            now.rows[at], now.sides[at], drift[at], pull + turning, friction[at]
         )
         borne = self._borne.at(points, self._body)[at]
         found = solve(asked, borne, most)
@@ -248,10 +260,8 @@ class SolidBlocks:
     def _points(self, place: Place, step: float) -> Found:
         """Find the points of contact about a place."""
         hulls = self.bodies.hulls.placed(*place)
-        speed = np.linalg.norm(self._velocities[:, :3], axis=1)
-        speed += self.bodies.reach * np.linalg.norm(self._velocities[:, 3:], axis=1)
-        gravity = float(np.linalg.norm(self.bodies.problem.gravity))
-        way = np.append(step * (speed + 2 * step * gravity) + NEAR, 0.0)[hulls.owner]
+        gravity = float(np.linalg.norm(self._gravity))
+        way = np.append(step * (self._speeds() + 2 * step * gravity) + NEAR, 0.0)[hulls.owner]
         pairs = near(hulls, way)
         points = meet(hulls, pairs, way[pairs].sum(axis=1))
         drawn, rounded = self._drawn.at(points)
@@ -303,5 +313,5 @@ def at_rest(bodies: Bodies) -> Step:
     axes, sides = contacts.axes[contacts.joint], assembly.sides.T[contacts.joint]
     rows = bodies.rows(axes, places, sides, bodies.built)
     friction = np.minimum(contacts.friction, MOST_FRICTION)
-    pull = bodies.pull(bodies.built)
+    pull = bodies.pull(bodies.built, bodies.problem.gravity)
     return bodies.asked(rows, sides, np.zeros((len(places), 3)), pull, friction)
