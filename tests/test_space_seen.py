@@ -26,6 +26,7 @@ from worlds import Quality
 import blocksim
 from blocksim import JointState, Recording, Settings
 from blocksim.blocks.record import to_record
+from blocksim.blocks.shaking import Shaking
 from blocksim.report.sheetpage import structure_page
 from blocksim.view.canvas import Panel
 from blocksim.view.film import Film
@@ -383,3 +384,15 @@ def test_a_film_is_told_with_what_it_shows_falsely(tmp_path: Path) -> None:
     width = math.cbrt(1.0 * 0.6 * 0.3) / run.problem.assembly.size
     assert f"blocks overlap by {0.1 / width:.1%} of the smallest" in done.stdout
     assert "energy rose again, by 2.00%" in done.stdout
+
+
+def test_a_film_in_space_has_the_pulse_of_the_ground_and_no_marks_in_it() -> None:
+    """Marks go along the ground of the plane, which is a line; here they crossed the blocks."""
+    run = tipping()
+    pulse = Shaking(shape="half-sine", amplitude=0.4, duration=1.0)
+    shaken = replace(run, problem=replace(run.problem, shaking=pulse))
+    stage, _, _, acting, _ = Film([shaken], height=360).shots[0]
+    shapes, labels = acting.aside(stage.at(0.1), 1.0)
+    assert [each.words.startswith("ground +") for each in labels] == [True]
+    # The pulse: its line of rest, its curve and its mark.
+    assert len(shapes) == 3

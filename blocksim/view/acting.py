@@ -121,7 +121,8 @@ class Acting:
         if problem.shaking is not None:
             seconds = moment.time * self._stage.unit
             shapes, labels = self._pulse(problem.shaking, seconds)
-            shapes += self._marks(problem.shaking, seconds, share)
+            # In space the ground is no line along which marks could go.
+            shapes += [] if problem.in_space else self._marks(problem.shaking, seconds, share)
         if (moved := self._moved(moment)) is not None:
             labels.append(self._corner(f"supports moved {abs(1e3 * moved):.1f} mm"))
         below = 0 if moved is None else 1
