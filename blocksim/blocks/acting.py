@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from blocksim.blocks.assembly import Array, Blocks, frozen
+from blocksim.blocks.shaking import shaking_record
 from blocksim.common.checks import COORDINATE, FACTOR, FORCE, require_all
 
 if TYPE_CHECKING:
@@ -69,6 +70,14 @@ def shaking_words(problem: Problem[Any]) -> str:
         return ""
     way = round(math.degrees(problem.azimuth), 9)
     return problem.shaking.words + (f" towards {way:g} deg from x" if problem.in_space else "")
+
+
+def shake_record(problem: Problem[Any]) -> dict[str, Any] | None:
+    """Return what a structure file says of ground that shakes, in space with its direction."""
+    if problem.shaking is None:
+        return None
+    said = shaking_record(problem.shaking)
+    return {**said, "azimuth_deg": math.degrees(problem.azimuth)} if problem.in_space else said
 
 
 def with_push(problem: Problem[Blocks], across: float) -> Problem[Blocks]:

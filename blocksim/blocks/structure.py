@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from blocksim.blocks.acting import shake_record
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
 from blocksim.blocks.entries import Around, ShakeEntry, StructureFile
 from blocksim.blocks.given import GivenJoint
@@ -20,7 +21,7 @@ from blocksim.blocks.outlines import counter_clockwise
 from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Move, Problem
 from blocksim.blocks.rows import column
-from blocksim.blocks.shaking import Shaking, shaking_of, shaking_record
+from blocksim.blocks.shaking import Shaking, shaking_of
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.common.checks import endless_text, require
 from blocksim.common.errors import MISSING, InputError
@@ -221,14 +222,6 @@ def record_of(
     }
 
 
-def shake_record(problem: Problem[Any]) -> dict[str, Any] | None:
-    """Return what a structure file says of ground that shakes, in space with its direction."""
-    if problem.shaking is None:
-        return None
-    said = shaking_record(problem.shaking)
-    return {**said, "azimuth_deg": math.degrees(problem.azimuth)} if problem.in_space else said
-
-
 def structure_record(problem: Problem) -> dict[str, Any]:
     """Write a problem as a structure file does; `structure_of` reads it back."""
     assembly = problem.assembly
@@ -248,7 +241,7 @@ def structure_record(problem: Problem) -> dict[str, Any]:
             problem,
             block=lambda at: _block_record(problem, at, free=at not in touched),
             bed=lambda bed: {"polygons": [each.tolist() for each in bed.polygons]},
-            ground=lambda at: behind(at).tolist(),
+            ground=_ground,
             joint=_joint_record,
         ),
         "size": assembly.size,
@@ -266,11 +259,11 @@ def ids_of(assembly: Assembly | SpatialAssembly) -> tuple[list[str], list[str]]:
     return [f"b{at}" for at in range(len(blocks))], [f"s{at}" for at in range(len(beds))]
 
 
-def behind(joint: Joint) -> Array:
-    """Return the corners of a flat triangle behind a joint with the ground, (3, 2) [m]."""
+def _ground(joint: Joint) -> list[list[float]]:
+    """Return the corners of a flat triangle behind a joint with the ground."""
     out = joint.normal * (-1 if joint.before == SUPPORT else 1) * joint.length / 10
     corners = np.stack([joint.inner, joint.outer, (joint.inner + joint.outer) / 2 + out])
-    return counter_clockwise(corners)
+    return counter_clockwise(corners).tolist()
 
 
 def _block_record(problem: Problem, at: int, *, free: bool) -> dict[str, Any]:

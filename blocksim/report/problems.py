@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import At, Line, friction_angle, line_of
-from blocksim.blocks.acting import shaking_words, tilt_and_lean, towards
+from blocksim.blocks.acting import shake_record, shaking_words, tilt_and_lean, towards
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.road import fill_of
-from blocksim.blocks.structure import shake_record
 from blocksim.common.words import counted
 from blocksim.kinds.circular import LEAST_DENSITY, CircularArch
 

@@ -12,7 +12,6 @@ from blocksim.blocks.assembly import SPATIAL, SUPPORT, Array, Assembly, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.space.assembly import FaceJoint, SolidBlock, SpatialAssembly
 from blocksim.blocks.space.polyhedron import Polyhedron
-from blocksim.blocks.structure import behind
 
 UP = np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 1.0]])
 """The plane in space."""
@@ -60,22 +59,8 @@ def extruded(problem: Problem) -> Problem[SpatialAssembly]:
 
 
 def prisms(assembly: Assembly) -> SpatialAssembly:
-    """Return blocks of the plane as prisms, with their joints and supports.
-
-    A joint with the ground that lies on no support gets one behind it.
-    """
+    """Return blocks of the plane as prisms, with their joints and supports."""
     deep = max(block.depth for block in assembly.blocks)
-    beds = [
-        (each.name or f"support {at}", tuple(prism(part, deep) for part in each.polygons))
-        for at, each in enumerate(assembly.supports)
-    ]
-    joints: list[FaceJoint] = []
-    for joint in assembly.joints:
-        bed = joint.support
-        if bed is None and SUPPORT in (joint.before, joint.after):
-            bed = len(beds)
-            beds.append((f"support {bed}", (prism(behind(joint), deep),)))
-        joints.append(replace(_face(joint, assembly), support=bed))
     return SpatialAssembly(
         blocks=tuple(
             SolidBlock(
@@ -87,10 +72,15 @@ def prisms(assembly: Assembly) -> SpatialAssembly:
             for at, block in enumerate(assembly.blocks)
         ),
         supports=tuple(
-            SolidBlock(hulls=hulls, name=name, weight=0.0, centre=np.zeros(3))
-            for name, hulls in beds
+            SolidBlock(
+                hulls=tuple(prism(part, deep) for part in support.polygons),
+                name=support.name or f"support {at}",
+                weight=0.0,
+                centre=np.zeros(3),
+            )
+            for at, support in enumerate(assembly.supports)
         ),
-        joints=tuple(joints),
+        joints=tuple(_face(joint, assembly) for joint in assembly.joints),
     )
 
 
@@ -150,7 +140,7 @@ def _at(points: Array, y: float) -> Array:
 
 
 def _face(joint: Joint, assembly: Assembly) -> FaceJoint:
-    """Return a joint over the depth that both blocks have, on no support."""
+    """Return a joint over the depth that both blocks have."""
     sides = [each for each in (joint.before, joint.after) if each != SUPPORT]
     half = min(assembly.blocks[each].depth for each in sides) / 2
     ends = joint.inner[None] if joint.is_corner else np.stack([joint.inner, joint.outer])
@@ -159,6 +149,7 @@ def _face(joint: Joint, assembly: Assembly) -> FaceJoint:
         after=joint.after,
         points=np.concatenate([_at(ends, -half), _at(ends[::-1], half)]),
         normal=UP @ joint.normal,
+        support=joint.support,
         friction=joint.friction,
         gap=joint.gap,
     )

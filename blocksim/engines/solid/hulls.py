@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.blocks.space.assembly import SpatialAssembly
-from blocksim.blocks.space.polyhedron import Polyhedron
+from blocksim.blocks.space.assembly import FaceJoint, SpatialAssembly
+from blocksim.blocks.space.polyhedron import Polyhedron, frame
 
 Places = NDArray[np.int64]
+LEAST, FACE = 1e-3, 3
+"""Width of what a corner stands on [size]; points of a joint from which on it has an area."""
 FLOOR_WIDTH = 100.0
 """Side of the floor beyond what stands on it [size]."""
 
@@ -25,7 +27,8 @@ class Hulls:
     Lengths are in units of the assembly's size.
 
     `owner`, (hulls,): Block of each, `SUPPORT` where it is fixed.
-    `support`, (hulls,): Which support it is part of; -1 for the floor and for what moves.
+    `support`, (hulls,): Which support it is part of; -1 for the floor, for one that is not
+        known and for what moves.
     `corners`, (hulls, v, 3): From the centre of the block; of fixed ones from the origin.
     `normals`, (hulls, f, 3).
     `offsets`, (hulls, f): ``normal @ x`` on each face.
@@ -61,6 +64,7 @@ class Hulls:
 def hulls_of(assembly: SpatialAssembly, axes: Array) -> Hulls:
     """Return the convex parts of all blocks, supports and the floor, in the blocks' frames.
 
+    What a joint stands on that lies on no known support is as wide as the joint.
     The floor is level with the lowest of them. No block touches it as it is built but
     through a joint.
 
@@ -81,8 +85,25 @@ def hulls_of(assembly: SpatialAssembly, axes: Array) -> Hulls:
             made.append(Polyhedron(hull.corners / size, hull.slack / size))
             owner.append(SUPPORT)
             support.append(index)
+    for joint in assembly.joints:
+        if SUPPORT in (joint.before, joint.after) and joint.support is None:
+            made.append(_behind(joint, size))
+            owner.append(SUPPORT)
+            support.append(-1)
     made.append(_floor(assembly))
     return _padded(made, [*owner, SUPPORT], [*support, -1])
+
+
+def _behind(joint: FaceJoint, size: float) -> Polyhedron:
+    """Return a pyramid behind a joint with the ground."""
+    out = joint.normal * (-1 if joint.before == SUPPORT else 1)
+    middle = joint.points.mean(axis=0)
+    wide = float(np.ptp(joint.points, axis=0).max()) or LEAST * size
+    corners = joint.points
+    if len(corners) < FACE:
+        one, other = frame(joint.normal)
+        corners = middle + wide * np.array([one, other, -one, -other])
+    return Polyhedron(np.vstack([corners, middle + wide / 10 * out]) / size)
 
 
 def _floor(assembly: SpatialAssembly) -> Polyhedron:
