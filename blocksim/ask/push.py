@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from blocksim.blocks.acting import push_on_all, sideways, with_push
+from blocksim.blocks.acting import azimuth_words, push_on_all, sideways, with_push
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import bears_road
 from blocksim.common.checks import PUSH, require
@@ -49,7 +49,7 @@ def ways_of(problem: Problem[Any]) -> dict[str, float]:
     """Return names and signs of the ways: both in the plane, in space that of the azimuth."""
     if not problem.in_space:
         return {f"to the {way}": sign for way, sign in WAYS.items()}
-    return {f"towards {round(math.degrees(problem.azimuth), 9):g} deg from x": 1.0}
+    return {azimuth_words(problem): 1.0}
 
 
 def asked(problem: Problem[Any], way: str) -> Problem[Any]:

@@ -64,12 +64,16 @@ def sideways(problem: Problem[Any]) -> Array:
     return np.array([1.0, 0.0])
 
 
+def azimuth_words(problem: Problem[Any]) -> str:
+    """Say towards where blocks in space are pushed, and their ground shakes."""
+    return f"towards {round(math.degrees(problem.azimuth), 9):g} deg from x"
+
+
 def shaking_words(problem: Problem[Any]) -> str:
     """Say how the ground shakes; empty where it does not."""
     if problem.shaking is None:
         return ""
-    way = round(math.degrees(problem.azimuth), 9)
-    return problem.shaking.words + (f" towards {way:g} deg from x" if problem.in_space else "")
+    return problem.shaking.words + (f" {azimuth_words(problem)}" if problem.in_space else "")
 
 
 def shake_record(problem: Problem[Any]) -> dict[str, Any] | None:

@@ -122,9 +122,9 @@ def _objects(content: bytes, ending: str) -> Iterator[tuple[str, Array, Facets]]
         with np.errstate(all="ignore"):
             scene: Any = library.load_scene(io.BytesIO(content), file_type=ending, **options)
             dumped: list[Any] = scene.dump()
-        # The library gives objects in no order of their own.
         # Points and lines are no bodies.
         solid = [each for each in dumped if hasattr(each, "faces")]
+        # The library gives objects in no order of their own.
         meshes = sorted(solid, key=_name_of)
         total = sum(len(mesh.faces) for mesh in meshes)
         # Files without objects have no names: their bodies are numbered.

@@ -149,8 +149,8 @@ def _face(joint: Joint, assembly: Assembly) -> FaceJoint:
         after=joint.after,
         points=np.concatenate([_at(ends, -half), _at(ends[::-1], half)]),
         normal=UP @ joint.normal,
-        support=joint.support,
         friction=joint.friction,
+        support=joint.support,
         gap=joint.gap,
     )
 

@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.space.assembly import FaceJoint, SpatialAssembly
+from blocksim.blocks.space.parting import FACE
 from blocksim.blocks.space.polyhedron import Polyhedron, frame
 
 Places = NDArray[np.int64]
-LEAST, FACE = 1e-3, 3
-"""Width of what a corner stands on [size]; points of a joint from which on it has an area."""
+LEAST = 1e-3
+"""Width of what a corner stands on [size]."""
 FLOOR_WIDTH = 100.0
 """Side of the floor beyond what stands on it [size]."""
 

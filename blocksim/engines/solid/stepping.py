@@ -116,8 +116,8 @@ class SolidBlocks(OnGround):
     def advance(self, steps: int) -> None:
         """Let the blocks move."""
         for _ in range(steps):
-            before = vars(self).copy()
             rested = self._asked.shaking is not None and self._is_at_rest
+            before = vars(self).copy() if rested else {}
             self._move(self._step)
             if rested and not self._is_at_rest:
                 self._set_off(self._step, before)
