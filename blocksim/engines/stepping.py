@@ -75,7 +75,7 @@ class Stepping(Placed):
     def __init__(self, problem: Problem, accuracy: float, restitution: float) -> None:
         super().__init__(problem)
         self._accuracy, self._restitution = accuracy, restitution
-        self._speeding = np.zeros_like(self._poses)
+        self._speeding: Array = np.zeros_like(self._poses)
         self._usual = self._penetration = 0.0
         self._way: float = 0.0
         self._crowded, self._crowd = 0, FEW
@@ -174,8 +174,9 @@ class Stepping(Placed):
         gap = np.where(np.abs(start.gap) > self._closed(touch), start.gap, 0.0)
         rates[:, :2] += REGAIN * np.maximum(gap, -DEEP) / max(step, self._usual)
         rates[:, :2][~shut] += FAR * (1 + float(np.abs(rates).max(initial=0.0)))
+        began = _moves(self._solution)
         solution = self._solve(touch, rates / step, PRECISION)
-        if self._is_at_rest and np.abs(solution.acceleration).max() > MOVES:
+        if self._is_at_rest and not began and _moves(solution):
             solution = self._or_rest(touch, rates / step, solution)
         self._shut = shut
         self._begins = start.gap, rate[:, :2]
@@ -196,7 +197,7 @@ class Stepping(Placed):
         Friction may allow both, and what is known of the last step leads to either.
         """
         found = self._problem.solve(touch.rows, rates, self._free, None, PRECISION)
-        if not found.residual <= RESIDUAL or np.abs(found.acceleration).max() > MOVES:
+        if not found.residual <= RESIDUAL or _moves(found):
             return moves
         self._solution = found
         return found
@@ -314,3 +315,8 @@ class Stepping(Placed):
         if self._solution is not None:
             none[self._solution.contacts != OPEN] += min(self._way**2, BENT)
         return none
+
+
+def _moves(solution: Solution | None) -> bool:
+    """Tell whether blocks are known to begin to move."""
+    return solution is not None and float(np.abs(solution.acceleration).max()) > MOVES
