@@ -1,5 +1,6 @@
 """Fill as soil, held against integrals and linear programmes of a bridge put together apart."""
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 from drawn import written
 from own_bridge import SPARED, Bridge
-from running import answered, ran
+from running import answered, ran, refused
 from scipy.integrate import quad
 from test_crossing import is_as_bad_as_said
 
@@ -183,3 +184,65 @@ def test_a_vehicle_crosses_a_drawn_wall_under_fill(
     place = written(tmp_path / "head.json", {**WEDGE, "blocks": [WEDGE["blocks"][0], head]})
     fill = ("--fill", "1", "--fill-unit-weight", "18")
     is_as_bad_as_said(str(place), *fill, *dispersal)
+
+
+def test_each_course_of_a_wall_bears_the_soil_beside_it(tmp_path: Path) -> None:
+    """Four courses of half a metre, a metre thick: shear at a depth h is K gamma h^2 / 2.
+
+    The topmost course bore all of it, and slid off.
+    """
+    rows = [
+        {"id": k, "vertices": [[0, k / 2], [1, k / 2], [1, k / 2 + 0.5], [0, k / 2 + 0.5]]}
+        for k in range(4)
+    ]
+    floor = {"id": "floor", "vertices": [[-5, -1], [5, -1], [5, 0], [-5, 0]], "fixed": True}
+    wall = {"blocks": [floor, *rows], "friction": 0.6, "density": 20e3}
+    place = written(tmp_path / "wall.json", wall)
+    fill = ("--fill", "1e-6", "--fill-unit-weight", "18", "--fill-pressure")
+    for sides, sign in (("0.3,0", 1), ("0,0.3", -1)):
+        record = answered("check", place, *fill, sides)
+        shears = [abs(joint["friction_force"]) for joint in record["joints"]]
+        deep = np.array([2.0, 1.5, 1.0, 0.5])
+        assert shears == pytest.approx(0.3 * 18e3 * deep**2 / 2, rel=1e-5)
+        reaction = record["reactions"][0]
+        assert reaction["horizontal_kN"] == pytest.approx(-sign * 10.8, rel=1e-5)
+        assert reaction["x_m"] - 0.5 == pytest.approx(sign * 10.8 * 2 / 3 / 40, rel=1e-5)
+    # All of it slides where K gamma h^2 / 2 is more than mu times the weight.
+    for share, verdict in ((0.66, "stands"), (0.67, "collapses")):
+        record = answered("check", place, *fill, f"{share},0", code=None)
+        assert record["verdict"] == verdict
+
+
+BUTTRESS = """
+kind = "portal"
+friction = 0.7
+density = 20e3
+pier_width = 1.0
+foot_width = 2.0
+pier_height = 3.0
+pier_courses = 3
+arch = { kind = "circular-arch", half_angle_deg = 90, radius = 4, thickness = 0.5, fill = 0.75 }
+"""
+
+
+def test_fill_lies_on_the_backs_of_buttresses(tmp_path: Path) -> None:
+    """What was not weighed there was taken off again by a layer, which pulled piers up."""
+    place = tmp_path / "buttress.toml"
+    place.write_text(BUTTRESS)
+    # Road 5 m above the springings: over the ring of 4.25 m, a ledge of 0.5 m, and a slope.
+    area = 5 * 8.5 - math.pi * 4.25**2 / 2 + 2 * (0.5 * 5 + 1.0 * (5 + 8) / 2)
+    plain = answered("check", str(place))["problem"]["fill_weight_kN"]
+    assert plain == pytest.approx(20 * area)
+    lighter = answered("check", str(place), "--fill-layer", "100", "10")["problem"]
+    # Of the layer surfaces are straight from joint to joint.
+    assert lighter["fill_weight_kN"] == pytest.approx(10 * area, rel=0.02)
+
+
+def test_spans_of_fill_of_their_own_say_it_by_regions(tmp_path: Path) -> None:
+    """What a layer or a pressure from the side is of such a span was told of another fill."""
+    place = tmp_path / "arcade.toml"
+    more = 'kind = "arcade"\neach_span = [{}, { fill_density = 0.5 }]'
+    other = BUTTRESS.replace('kind = "portal"', more)
+    place.write_text(other.replace("pier_width = 1.0\nfoot_width", "pier_width"))
+    said = refused("check", place, "--fill-pressure", "0.3")
+    assert "each_span[1].fill_density = 0.5" in said

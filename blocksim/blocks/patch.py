@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,10 +27,14 @@ class Profile:
     `ends`, (pieces, 2, 2): Left and right end of each [m]. Where there is no body there is no
         piece.
     `body`, (pieces,).
+    `chain`, (links + 1, 2): From left to right along pieces and the steps between them [m].
+    `owner`, (links,): Whose each link of the chain is; -1 of a gap.
     """
 
     ends: Array
     body: NDArray[np.int64]
+    chain: Array
+    owner: NDArray[np.int64]
 
     @classmethod
     def of(cls, bodies: Sequence[Sequence[Array]]) -> Profile:
@@ -44,9 +47,11 @@ class Profile:
         for index, body in enumerate(bodies):
             for polygon in body:
                 edges = np.stack([polygon, np.roll(polygon, -1, axis=0)], axis=1)
-                starts.append(edges[edges[:, 0, 0] != edges[:, 1, 0]])
-                owners += [index] * len(starts[-1])
-        edges = np.concatenate(starts)
+                starts.append(edges)
+                owners += [index] * len(edges)
+        sides, of_side = np.concatenate(starts), np.array(owners)
+        across = sides[:, 0, 0] != sides[:, 1, 0]
+        edges, of_edge = sides[across], of_side[across]
         backward = edges[:, 0, 0] > edges[:, 1, 0]
         edges[backward] = edges[backward][:, ::-1]
         slope = (edges[:, 1, 1] - edges[:, 0, 1]) / (edges[:, 1, 0] - edges[:, 0, 0])
@@ -66,7 +71,15 @@ class Profile:
         edge = np.array([each for each, _, _ in pieces])
         x = np.array([each[1:] for each in pieces])
         y = edges[edge, :1, 1] + slope[edge, None] * (x - edges[edge, :1, 0])
-        return cls(ends=np.stack([x, y], axis=-1), body=np.array(owners)[edge])
+        ends, body = np.stack([x, y], axis=-1), of_edge[edge]
+        chain, owner = [*ends[0]], [int(body[0])]
+        for piece in range(1, len(ends)):
+            for height, behind in _step(ends[piece - 1 : piece + 1], sides, of_side):
+                chain.append(np.array([ends[piece, 0, 0], height]))
+                owner.append(behind)
+            chain.append(ends[piece, 1])
+            owner.append(int(body[piece]))
+        return cls(ends=ends, body=body, chain=np.array(chain), owner=np.array(owner))
 
     def height(self, piece: int, x: float) -> float:
         """Height of a piece at a place [m]."""
@@ -108,13 +121,12 @@ class Profile:
 
     def enters(self, dispersal: Dispersal) -> Array:
         """Return where on the road the outermost rays of a load meet corners [m]."""
-        x, y = self.ends.reshape(-1, 2).T
+        x, y = self.chain.T
         aside = dispersal.slope * np.maximum(dispersal.road - y, LEAST)
         # A load above a step, or a gap, meets it on one side and not on the other.
-        links = np.arange(len(x) - 1)
-        same = np.hypot(np.diff(x), np.diff(y)) <= LEVEL * (x[-1] - x[0])
-        steps = links[(links % 2 == 1) & ~same]
-        beside = x[[0, *steps, *(steps + 1), len(x) - 1]]
+        before, after = self.ends[:-1, 1], self.ends[1:, 0]
+        apart = np.hypot(*(after - before).T) > LEVEL * (x[-1] - x[0])
+        beside = np.concatenate([x[[0, -1]], before[apart, 0], after[apart, 0]])
         return np.unique(np.concatenate([x - aside, x + aside, beside]))
 
     def spread(self, places: Array, dispersal: Dispersal) -> tuple[Array, Array]:
@@ -127,7 +139,7 @@ class Profile:
         Returns `share`, (k, links).
         Returns `point`, (k, links, 2): [m]; of no meaning where the share is 0.
         """
-        chain, most = self.ends.reshape(-1, 2), dispersal.slope
+        chain, most = self.chain, dispersal.slope
         depth = dispersal.road - chain[:, 1]
         seen = (chain[:, 0] - places[:, None]) / np.maximum(depth, LEAST)
         # What lies behind something nearer is hidden: rays go on only past what they missed.
@@ -144,14 +156,29 @@ class Profile:
             mean = np.where(met, (weights * along).sum(axis=-1) / share, 0.0)
         return share, chain[:-1] + mean[..., None] * way
 
-    @cached_property
-    def owner(self) -> NDArray[np.int64]:
-        """Whose each link of the chain is: pieces and steps between them; -1 of a gap."""
-        (x, y) = self.ends.reshape(-1, 2).T
-        upper = (np.arange(len(x) - 1) + (np.diff(y) > 0)) // 2
-        owner = self.body[upper]
-        step = np.arange(len(owner)) % 2 == 1
-        owner[step & (np.diff(x) > LEVEL * (x[-1] - x[0]))] = -1
-        # Pieces follow each other; of a step the upper one bears.
-        owner[~step] = self.body
-        return owner
+
+def _step(
+    pieces: Array, sides: Array, owners: NDArray[np.int64]
+) -> Iterator[tuple[float, int]]:
+    """Find who is behind a step between two pieces, and up or down to which height.
+
+    `pieces`, (2, 2, 2): On the left and on the right of it.
+    `sides`, (sides, 2, 2): Of all bodies, which are `owners`.
+    """
+    here, there = pieces[0, 1], pieces[1, 0]
+    level = LEVEL * float(np.ptp(sides[:, :, 0]))
+    if there[0] - here[0] > level:
+        yield float(there[1]), -1
+        return
+    rises = there[1] > here[1]
+    (low, high) = sorted((float(here[1]), float(there[1])))
+    (x0, y0), (x1, y1) = sides.transpose(1, 2, 0)
+    heights = np.unique(np.append(sides[:, :, 1].clip(low, high), [low, high]))
+    bands = list(itertools.pairwise(heights.tolist()))
+    for bottom, top in bands if rises else reversed(bands):
+        crossed = np.flatnonzero((np.minimum(y0, y1) <= bottom) & (np.maximum(y0, y1) >= top))
+        share = ((bottom + top) / 2 - y0[crossed]) / (y1 - y0)[crossed]
+        far = (x0[crossed] + share * (x1 - x0)[crossed] - here[0]) * (1 if rises else -1)
+        crossed, far = crossed[far >= -level], far[far >= -level]
+        behind = int(owners[crossed[far.argmin()]]) if far.size else -1
+        yield (top if rises else bottom), behind

@@ -183,6 +183,10 @@ def remade(problem: Problem[Blocks], maker: Kind[Any]) -> Problem[Blocks]:
 
 def with_soil(problem: Problem, soil: Soil | None) -> Problem:
     """Return a problem on which soil presses, in place of any other."""
+    for place, span in enumerate(getattr(problem.maker, "each_span", ())):
+        ok = soil is None or span.fill_density is None
+        allowed = "left out beside what the fill is made of: --fill-region tells it of a span"
+        require(ok, f"each_span[{place}].fill_density", span.fill_density, allowed)
     fills = _fills(problem)
     others = problem.dead[fill_loads(problem) :]
     made = replace(problem, soil=soil)

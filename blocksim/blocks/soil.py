@@ -125,7 +125,7 @@ class Soil:
         self, profile: Profile, depths: Array, road: float, sides: Sides
     ) -> Iterator[tuple[int, Array]]:
         """Return parts of the surface of each body: x, y, force across, and force down."""
-        chain = profile.ends.reshape(-1, 2)
+        chain = profile.chain
         low = float(profile.ends[profile.body < depths.size, :, 1].min())
         levels = self._levels(road, low)
         edges = sorted({x for low, high, _ in self.regions for x in (low, high)})

@@ -68,15 +68,21 @@ class Portal(Maker):
             (inner, spring), (outer, high) = face.tolist()
             edge = inner + side * self.pier_width
             below, above = sorted((inner, inner + side * foot)), sorted((inner, edge))
-            bodies += pier(
+            courses = pier(
                 f"{name} pier", below, above, ground, spring, self.pier_courses, depth
             )
+            place, bodies = len(bodies) + 1, [*bodies, *courses]
             left, right = sorted([(edge, high), (outer, high)])
             near = LEVEL * arch.thickness
             bodies += head(f"{name} skewback", above, spring, left, right, near, depth)
             if arch.fill is not None:
                 road, heavy = arch.top + arch.fill, density * arch.fill_density * depth
                 fills += fill_over(len(bodies), left, right, road, heavy)
+                for at, course in enumerate(courses if foot > self.pier_width else ()):
+                    # Their backs look up.
+                    ends = np.array(course.polygons[0])[[0, 3] if side < 0 else [2, 1]]
+                    (x0, y0), (x1, y1) = ends.tolist()
+                    fills += fill_over(place + at, (x0, y0), (x1, y1), road, heavy)
         west, east = faces[0, 0, 0] - widest, faces[1, 0, 0] + widest
         reach = (east - west) / 4
         first = len(bodies) + 1
