@@ -14,7 +14,7 @@ import pytest
 from running import PROGRAM, ran, refused
 from strangers import packed
 
-from blocksim import Block, CircularArch, InputError, Load, load_recording
+from blocksim import Block, CircularArch, InputError, Load, check, load_recording
 from blocksim.blocks.problem import Move
 from blocksim.common.files import json_of, read_file, toml_of
 from blocksim.simulation import archive as recordings
@@ -53,6 +53,12 @@ def test_blocks_in_python_have_sizes_of_real_things(field: str, value: float) ->
 def test_so_have_loads_and_motions(made: Any, words: str) -> None:
     with pytest.raises(InputError, match=re.escape(words)):
         made()
+
+
+@pytest.mark.parametrize("settings", ["step=0.1", 5, [("step", 0.1)]])
+def test_settings_are_values_by_name(settings: Any) -> None:
+    with pytest.raises(InputError, match=r"settings = .*: must be values by name"):
+        check(RING, method="direct", settings=settings)
 
 
 # One reader for all files.

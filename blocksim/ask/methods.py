@@ -10,9 +10,9 @@ So `auto` is the first of them that sees what is asked to that width.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import require
@@ -120,6 +120,8 @@ def _cheapest(tol: float, problem: Problem[Any] | None, *, moving: bool) -> Meth
 
 def require_settings(method: Method, settings: Overrides) -> None:
     """Raise `InputError` unless a method knows all settings, each within its range."""
+    by_name = isinstance(cast(object, settings), Mapping)
+    require(by_name, "settings", settings, 'values by name, such as {"step": 0.01}')
     known = ", ".join(method.adjustable)
     allowed = f"one of {known} for {method.name}" if known else f"left out for {method.name}"
     for name, value in settings.items():
