@@ -149,6 +149,18 @@ def test_supports_bear_blocks_fill_and_loads(pages: Path) -> None:
     assert sum(borne) == pytest.approx(weight + fill + 20, rel=1e-3)
 
 
+def test_the_most_that_joints_use_is_in_their_table(tmp_path: Path) -> None:
+    """Of blocks that crush the state that presses them least is shown: it was of another."""
+    page = tmp_path / "crushes.html"
+    load = ("--fill", "0.5", "--point-load", "2", "20", "--strength", "5")
+    ran("report", *ASKED, *FRICTION, *load, "--out", page)
+    rows = rows_of(page)
+    joints = [row.split(" | ") for name, row in rows.items() if re.fullmatch(r"\w+-\w+", name)]
+    used = [float(cell.rstrip("\xa0%")) for row in joints for cell in row if "%" in cell]
+    assert len(used) == 2 * 32
+    assert rows["joints used"].startswith(f"{max(used):.1f}\xa0%")
+
+
 def test_weights_that_were_not_given_are_no_kilonewtons(pages: Path) -> None:
     text = (pages / "wall.html").read_text(encoding="utf-8")
     assert "weights are for 1 N/m³: no unit weight was given" in text

@@ -241,9 +241,12 @@ def _margin_facts(carried: Carried, *, of_thickness: bool) -> list[Fact]:
             f"least friction coefficient μ = {least:.4g}"
         )  # fmt: skip
         facts.append(Fact("friction factor", said, needed))
-    if carried.strength_used is not None:
+    # Where blocks crush the state that is shown is another: that which presses them least.
+    shown = None if carried.needed is None else carried.resultants
+    used = carried.strength_used if shown is None else float(shown.used.max())
+    if used is not None:
         both = "at most, of width or friction, in the state of greatest margin"
-        facts.append(Fact("joints used", percent(carried.strength_used, ".1f"), both))
+        facts.append(Fact("joints used", percent(used, ".1f"), both))
     return facts
 
 
