@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from running import answered, inside, ran
+from running import answered, inside, ran, refused
 from space_cases import box, is_over, problem_of, tower
 
 import blocksim
@@ -228,6 +228,32 @@ def test_a_stream_and_a_folder_are_answered_by_line_and_by_file(tmp_path: Path) 
     for option in (["--tilt", "3"], ["--method", "direct"], ["--must-rest"], ["--eta", "0.2"]):
         done = CliRunner().invoke(app, ["check", "-", *option], input=json.dumps(fine))
         assert isinstance(done.exception, blocksim.InputError)
+
+
+BOX = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+SIDES = ((1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4))
+
+
+def test_meshes_of_a_folder_have_a_unit_and_a_tolerance(tmp_path: Path) -> None:
+    """It was asked for by each file, and refused where it was given."""
+    for name, aside in (("a.obj", 400), ("b.obj", 600)):
+        lines: list[str] = []
+        for at, (who, shift) in enumerate((("floor", 0), ("low", 0), ("high", aside))):
+            # Each 2 mm above the one below.
+            lines.append(f"o {who}")
+            lines += [
+                f"v {1000 * x + shift} {1000 * y} {1000 * z + 1002 * at}" for x, y, z in BOX
+            ]
+            lines += ["f " + " ".join(str(8 * at + k) for k in side) for side in SIDES]
+        (tmp_path / name).write_text("\n".join(lines))
+    asked = ("check", str(tmp_path), "--mu", "0.6", "--unit", "mm", "--layer", "supports=floor")
+    told = [json.loads(line) for line in ran(*asked, "--tolerance", "0.005").splitlines()]
+    assert [each["verdict"] for each in told] == ["stands", "collapses"]
+    for line in ran(*asked).splitlines():
+        assert "touches nothing" in json.loads(line)["error"]
+    (tmp_path / "c").mkdir()
+    (tmp_path / "c" / "d.json").write_text(json.dumps(stack([1], [0])))
+    assert "--unit" in refused("check", tmp_path / "c", "--unit", "mm")
 
 
 WIDE, TALL, WEIGHT, ROUGH = 1.0, 3.0, 60_000.0, 0.5

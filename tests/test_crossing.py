@@ -172,6 +172,19 @@ def test_fill_spreads_a_wheel(dispersal: str) -> None:
     assert found["high"] > asked(bridge, "10@0")["high"]
 
 
+def test_a_curve_of_thrust_ends_where_it_falls() -> None:
+    """It went on straight, over the places at which there is none."""
+    arch = CircularArch(span=8, rise=3, thickness=0.45, voussoirs=15, friction=0.6)
+    heavy = crossing(arch.problem(), vehicle_of("60@0"))
+    falls = [place.load_factor < 1 for place in heavy.places]
+    assert any(falls)
+    assert not all(falls)
+    figure = envelope_figure(heavy)
+    curves = {each.get_gid(): each for axes in figure.axes for each in axes.lines}
+    drawn = np.asarray(curves["thrust-max-right"].get_ydata())
+    assert np.isnan(drawn).tolist() == falls
+
+
 KINDS = [
     ("pointed-arch", "--with", "fill=0.1"),
     pytest.param(("arcade",), marks=pytest.mark.long),

@@ -123,6 +123,20 @@ def test_faces_with_four_sides_of_boxes_without_names_are_told_apart(tmp_path: P
     assert len(found.joints) == 2
 
 
+def test_groups_of_a_file_without_objects_have_names(tmp_path: Path) -> None:
+    """All were one object without a name, so that nothing was a support."""
+    parts = [("supports", box()), ("stone", box().apply_translation([0, 0, 1]))]
+    lines, known = "", 0
+    for name, mesh in parts:
+        lines += f"g {name}\n"
+        lines += "".join(f"v {x} {y} {z}\n" for x, y, z in mesh.vertices)
+        lines += "".join("f {} {} {}\n".format(*face) for face in mesh.faces + known + 1)
+        known += len(mesh.vertices)
+    path = written(tmp_path / "groups.obj", lines.encode())
+    found = load_structure(path, friction=0.7, reading=Reading(unit="m")).assembly
+    assert [each.name for each in (*found.supports, *found.blocks)] == ["supports", "stone"]
+
+
 def flat() -> Any:
     made = box()
     made.vertices[:, 2] = 0
@@ -151,6 +165,10 @@ BROKEN = {
     "junk.stl": (lambda: b"\xff" * 99, ".stl"),
     "nan.obj": (lambda: b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "finite coordinates"),
     "lost.obj": (lambda: b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "mesh"),
+    "backwards.obj": (
+        lambda: b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n",
+        "counted from the first",
+    ),
     "empty.obj": (lambda: b"", "0 facets"),
     "points.ply": (lambda: trimesh.PointCloud(np.eye(3)), "0 facets"),
     "line.obj": (lambda: b"v 0 0 0\nv 1 0 0\nl 1 2\n", "0 facets"),

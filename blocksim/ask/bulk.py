@@ -25,11 +25,12 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.errors import BlocksimError, InputError, in_line
 from blocksim.common.processes import Hands
 from blocksim.kinds.changes import with_friction
-from blocksim.kinds.files import load_structure, structure_of, written
+from blocksim.kinds.files import AS_DRAWN, is_drawing, load_structure, structure_of, written
 from blocksim.kinds.offers import offers_of
 from blocksim.limit.determinate import margin_of_tower, statics_of_stack
 from blocksim.limit.exact import Exact
 from blocksim.limit.proof import proof_of_parting, proof_of_rest
+from blocksim.reading.asked import Reading
 
 Structure = str | bytes | Path | Mapping[str, object] | Problem[Any]
 """A line of JSON, a file, what such a file says, or a problem."""
@@ -76,10 +77,21 @@ class Told:
     error: str | None = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class _How:
+    """How files and lines are read; as of `check_many`."""
+
+    friction: float | None
+    reading: Reading
+    tolerance: float | None
+
+
 def check_many(
     structures: Iterable[Structure],
     *,
     friction: float | None = None,
+    reading: Reading = AS_DRAWN,
+    tolerance: float | None = None,
     workers: int | None = None,
 ) -> Iterator[Told]:
     """Tell of many structures whether they stand, by limit analysis, in their order.
@@ -93,6 +105,10 @@ def check_many(
         Lines of JSON, paths of files, what structure files say as dicts, or problems.
     friction : float, optional
         Coefficient of those that have none of their own.
+    reading : Reading
+        Unit and layers of drawings and meshes among files.
+    tolerance : float, optional
+        Gaps and overlaps of these up to which they are closed [m].
     workers : int, optional
         Processes; by default one a processor, started after the first 40 structures. A program
         that asks for more than that has to guard its main module, as `multiprocessing` says.
@@ -112,21 +128,26 @@ def check_many(
     """
     each = iter(structures)
     batches = iter(lambda: tuple(islice(each, BATCH)), ())
-    yield from check_batches(batches, friction=friction, workers=workers)
+    yield from check_batches(
+        batches, friction=friction, reading=reading, tolerance=tolerance, workers=workers
+    )
 
 
 def check_batches(
     batches: Iterable[Iterable[Structure]],
     *,
     friction: float | None = None,
+    reading: Reading = AS_DRAWN,
+    tolerance: float | None = None,
     workers: int | None = None,
 ) -> Iterator[Told]:
     """Tell of many structures whether they stand; see `check_many`.
 
     `batches`: Structures; each batch is answered as soon as it is there, as by `check_many`.
-    `friction`, `workers`: As of `check_many`.
+    `friction`, `reading`, `tolerance`, `workers`: As of `check_many`.
     """
     count = workers or os.cpu_count() or 1
+    how = _How(friction=friction, reading=reading, tolerance=tolerance)
     handed = deque[tuple[tuple[Structure, ...], Future[list[Told]]]]()
     with Hands(count) as hands, closing(_Coming(batches)) as coming:
         pool = _Pool(count, hands)
@@ -135,14 +156,14 @@ def check_batches(
                 batch = coming.next(wait=not handed)
                 if batch is None:
                     break
-                handed.append((batch, pool.submit(batch, friction)))
+                handed.append((batch, pool.submit(batch, how)))
             if not handed:
                 continue
             batch, found = handed.popleft()
             try:
                 yield from found.result()
             except BrokenExecutor:
-                yield from _one_by_one(batch, friction)
+                yield from _one_by_one(batch, how)
 
 
 class _Coming:
@@ -189,41 +210,39 @@ class _Pool:
     def __init__(self, count: int, hands: Hands) -> None:
         self._count, self._seen, self._hands = count, 0, hands
 
-    def submit(
-        self, batch: tuple[Structure, ...], friction: float | None
-    ) -> Future[list[Told]]:
+    def submit(self, batch: tuple[Structure, ...], how: _How) -> Future[list[Told]]:
         """Hand out a batch, or answer it here."""
         self._seen += len(batch)
         if self._count == 1 or self._seen <= ALONE:
             done = Future[list[Told]]()
-            done.set_result(_answered(batch, friction))
+            done.set_result(_answered(batch, how))
             return done
         try:
-            return self._hands.submit(_answered, batch, friction)
+            return self._hands.submit(_answered, batch, how)
         except BrokenExecutor:
             self._hands.renew()
-            return self._hands.submit(_answered, batch, friction)
+            return self._hands.submit(_answered, batch, how)
 
 
-def _one_by_one(batch: tuple[Structure, ...], friction: float | None) -> Iterator[Told]:
+def _one_by_one(batch: tuple[Structure, ...], how: _How) -> Iterator[Told]:
     """Answer structures in a process of their own, which may die of one."""
     with Hands(1) as own:
         for each in batch:
             try:
-                yield own.submit(_told, each, friction).result()
+                yield own.submit(_told, each, how).result()
             except BrokenExecutor:
                 yield Told(error="the process that answered it died: is there enough memory?")
                 own.renew()
 
 
-def _answered(batch: tuple[Structure, ...], friction: float | None) -> list[Told]:
-    return [_told(each, friction) for each in batch]
+def _answered(batch: tuple[Structure, ...], how: _How) -> list[Told]:
+    return [_told(each, how) for each in batch]
 
 
-def _told(structure: Structure, friction: float | None) -> Told:
+def _told(structure: Structure, how: _How) -> Told:
     """Answer one structure; what is wrong with it is its answer."""
     try:
-        problem = _read(structure, friction)
+        problem = _read(structure, how)
         return replace(_answer(problem), title=problem.title)
     except BlocksimError as error:
         return Told(error=str(error))
@@ -231,12 +250,18 @@ def _told(structure: Structure, friction: float | None) -> Told:
         return Told(error=in_line(" ".join(str(error).split()) or type(error).__name__))
 
 
-def _read(structure: Structure, friction: float | None) -> Problem[Any]:
+def _read(structure: Structure, how: _How) -> Problem[Any]:
     """Make a problem of a line, a file, or what one says."""
     if isinstance(structure, Problem):
         return structure
     if isinstance(structure, Path):
-        return load_structure(structure, friction=friction)
+        drawn = is_drawing(structure)
+        return load_structure(
+            structure,
+            friction=how.friction,
+            tolerance=how.tolerance if drawn else None,
+            reading=how.reading if drawn else AS_DRAWN,
+        )
     if isinstance(structure, str | bytes):
         text = structure.encode() if isinstance(structure, str) else structure
         if len(text) > LARGEST:
@@ -250,7 +275,7 @@ def _read(structure: Structure, friction: float | None) -> Problem[Any]:
             raise InputError("line", words, "one JSON object in a line") from None
     else:
         said = structure
-    return structure_of(said if friction is None else with_friction(said, friction))
+    return structure_of(said if how.friction is None else with_friction(said, how.friction))
 
 
 def _answer(problem: Problem[Any]) -> Told:

@@ -85,6 +85,12 @@ def halved(problem: Problem[Any], blocks: int) -> Evidence:
     return Evidence("reduction", f"{blocks} instead of {most} blocks were asked, by symmetry")
 
 
+def _lacking(margin: float) -> str:
+    """Say how far below 0 a margin is."""
+    lacking = float(f"{-100 * margin:.3g}")
+    return f"{lacking:g}%" if lacking < 1000 else f"{lacking:,.0f}%"
+
+
 def _words(static: Equilibrium) -> str:
     if static.exists:
         spare = max(0.0, static.margin)
@@ -96,7 +102,7 @@ def _words(static: Equilibrium) -> str:
         return "no forces of equilibrium exist, even if contacts could pull"
     return (
         "no forces of equilibrium exist: blocks would have to hold each other back with "
-        f"{-100 * static.margin:.3g}% of what contacts carry"
+        f"{_lacking(static.margin)} of what contacts carry"
     )
 
 
@@ -127,7 +133,7 @@ def _words_in_space(static: SpatialEquilibrium) -> str:
     far = f" up to {1 / static.gap:.1g} times all weight" if bounded else ""
     return (
         f"no forces of equilibrium exist{far}: a contact would have to hold its block back "
-        f"with {-100 * static.margin:.3g}% {own}"
+        f"with {_lacking(static.margin)} {own}"
     )
 
 

@@ -22,47 +22,59 @@ from blocksim.blocks.problem import Load, Problem
 from blocksim.cli.given import Loading, given_of
 from blocksim.cli.options import named_options, option_of
 from blocksim.cli.output import progress
-from blocksim.cli.subject import STREAM, Subject, anything_asked
+from blocksim.cli.subject import STREAM, Subject, anything_asked, reading_of
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.fields import fields_of
 from blocksim.common.files import json_text, read_toml
 from blocksim.common.tables import Written, as_said
-from blocksim.kinds.files import LARGEST_FILES, OTHERS
+from blocksim.kinds.files import LARGEST_FILES, OTHERS, is_drawing
 
 AT_ONCE = 1 << 16
 """Bytes of a stream that are read at once, or as many as there are."""
 GIVEN = {"mu", "friction_angle"}
 """Options that mean something for many structures."""
+OF_DRAWINGS = {"unit", "layer", "snap", "tolerance"}
+"""Those that mean something where drawings or meshes are among them."""
 
 
 def check_each(asked: Subject, others: Mapping[str, object]) -> NoReturn:
     """Answer the command check with a line of JSON for each structure, in their order."""
+    paths = [] if asked.scene == STREAM else _paths(asked.scene or "")
+    known = GIVEN | OF_DRAWINGS if any(map(is_drawing, paths)) else GIVEN
     for name, value in {**asked.options, **others}.items():
-        unset = value is None or value is False or name in GIVEN
+        unset = value is None or value is False or name in known
         allowed = "left out with many structures: these are read as they are"
         require(unset, option_of(name), value, allowed)
     with named_options():
         friction = asked.given.friction
+    given = asked.given
+    reading = reading_of(given.unit, given.layer, given.snap)
     if asked.scene == STREAM:
         # Each line has its answer, an empty one as well.
         names = ({"line": number} for number in count(1))
         told = check_batches(_lines(), friction=friction)
     else:
-        endings = (*LARGEST_FILES, *OTHERS)
-        folder = asked.scene or ""
-        paths = sorted(p for p in Path(folder).iterdir() if p.suffix.lower() in endings)
-        if not paths:
-            raise InputError("folder", MISSING, f"files in {', '.join(endings)}", where=folder)
         names = ({"file": path.name} for path in paths)
         batches = (paths[at : at + BATCH] for at in range(0, len(paths), BATCH))
-        told = check_batches(batches, friction=friction)
+        told = check_batches(
+            batches, friction=friction, reading=reading, tolerance=given.tolerance
+        )
     for name, each in zip(names, told, strict=False):
         title = {"title": each.title} if each.title else {}
         found = {"verdict": each.verdict, "proved": each.proved, "margin": each.margin}
         answer = {**title, **found}
         click.echo(json_text({**name, **({"error": each.error} if each.error else answer)}))
     raise click.exceptions.Exit(0)
+
+
+def _paths(folder: str) -> list[Path]:
+    """Return the files of a folder that are read, in their order."""
+    endings = (*LARGEST_FILES, *OTHERS)
+    paths = sorted(p for p in Path(folder).iterdir() if p.suffix.lower() in endings)
+    if not paths:
+        raise InputError("folder", MISSING, f"files in {', '.join(endings)}", where=folder)
+    return paths
 
 
 def _lines() -> Iterator[list[bytes]]:

@@ -115,7 +115,13 @@ def _objects(content: bytes, ending: str) -> Iterator[tuple[str, Array, Facets]]
     logging.getLogger("trimesh").propagate = False
     options: dict[str, Any] = {"process": False}
     if ending == "obj":
-        options |= {"split_objects": True, "group_material": False, "skip_materials": True}
+        backwards = re.search(rb"(?m)^f\s(?:.*\s)?-\d.*$", content)
+        said = "" if backwards is None else backwards[0].decode(errors="replace").strip()
+        require(not said, "mesh", said, "corners of facets counted from the first")
+        # Without objects groups are told apart.
+        objects = re.search(rb"(?m)^o\s", content) is not None
+        options |= {"split_objects": objects, "split_groups": not objects}
+        options |= {"group_material": False, "skip_materials": True}
     try:
         library = cast("Any", trimesh)
         # Numbers beyond all bounds are told below.

@@ -49,7 +49,8 @@ def crossing_lines(answer: Crossing) -> list[str]:
         most = max(found, key=lambda each: each[1])
         where = joint_names(problem.assembly)[joint]
         lines.append(
-            f"  thrust  at {where}, of all places asked: least {least[0] / 1e3:.6g} kN "
+            f"  thrust  at {where}, of all places where it stands: "
+            f"least {least[0] / 1e3:.6g} kN "
             f"({_axles(least[2], vehicle)}), greatest {most[1] / 1e3:.6g} kN "
             f"({_axles(most[2], vehicle)})"
         )

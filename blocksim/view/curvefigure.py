@@ -109,14 +109,17 @@ def _factors(axes: Axes, answer: Crossing) -> None:
 
 def _thrusts(axes: Axes, answer: Crossing) -> None:
     for heading, dashes in zip(HEADINGS, DASHES, strict=True):
-        found = [
-            (_middle(place.axles), ends[0] / 1e3, ends[1] / 1e3)
-            for place, ends in zip(answer.places, answer.thrusts, strict=True)
-            if place.heading == heading and ends is not None and math.isfinite(ends[1])
-        ]
-        if not found:
+        # Curves end where it falls.
+        found = np.array(
+            [
+                (_middle(place.axles), *(ends or (math.nan, math.nan)))
+                for place, ends in zip(answer.places, answer.thrusts, strict=True)
+                if place.heading == heading
+            ]
+        ).reshape(-1, 3)
+        if not np.isfinite(found[:, 1:]).all(axis=1).any():
             continue
-        x, least, most = np.array(found).T
+        x, least, most = found.T * [[1], [1e-3], [1e-3]]
         for name, values, wide in (("min", least, 0.8), ("max", most, 1.8)):
             axes.plot(x, values, color=THRUST, ls=dashes, lw=wide,
                       label=f"{'least' if name == 'min' else 'greatest'}, heading {heading}",
