@@ -340,9 +340,11 @@ def test_the_integrator_changes_its_mind_about_a_sine_once() -> None:
 
 
 @LONG
-def test_direct_says_of_sines_what_the_equation_says(tmp_path: Path) -> None:
-    told = housner.main(tmp_path, quick=True)
+@pytest.mark.parametrize("engine", ["direct", "pymunk"])
+def test_engines_say_of_sines_what_the_equation_says(tmp_path: Path, engine: str) -> None:
+    told = housner.main(tmp_path, quick=True, engine=engine)
     assert [row["differ"] for row in told] == [0] * 4
+    assert [row["open"] for row in told] == [0] * 4
     assert all(row["overturn"] not in (0, row["pulses"]) for row in told)
 
 
