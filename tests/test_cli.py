@@ -65,7 +65,7 @@ def test_an_option_given_twice_is_taken_twice_or_refused() -> None:
 def test_options_that_may_be_given_twice_are_taken_twice() -> None:
     # Axles and patches are in test_road, what `bracket --out` writes in test_crossing.
     wall = ("check", "wall", "--mu", "1")
-    sizes = ("--with", "courses=2", "--with", "length=3")
+    sizes = ("--with", "courses=2", "--with", "length=3.")
     blocks = [
         answered(*wall, *given)["problem"]["blocks"]
         for given in ((), sizes[:2], sizes[2:], sizes)

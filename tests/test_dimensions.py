@@ -88,6 +88,15 @@ def test_words_give_both_forms() -> None:
     assert "span 1.8 r, rise 0.9 r (intrados), thickness 0.2 r, friction angle 45 deg" in said
 
 
+@pytest.mark.parametrize("at", ["intrados", "centreline", "extrados"])
+def test_json_has_the_line_that_was_measured(at: str) -> None:
+    """Whatever the line was, span and rise were those of the intrados, and did not say so."""
+    for asked in (("check", *ASKED), ("bracket", *ASKED)):
+        told = answered(*asked, "--at", at)["problem"]
+        assert told["at"] == at
+        assert [told["span_m"], told["rise_m"]] == pytest.approx([8, 3], rel=EXACT)
+
+
 def test_a_bracket_answers_in_metres() -> None:
     told = answered("bracket", *ASKED)
     arch = told["arch"]

@@ -161,6 +161,7 @@ def test_a_drawn_wall_under_fill_by_hand(tmp_path: Path) -> None:
     fill = 18.0 * 0.5 * (3 * 1 + 1 * 2)
     assert record["problem"]["fill_weight_kN"] == pytest.approx(fill)
     side = 0.4 * 18 * 0.5 * (3**2 - 1**2) / 2
+    assert "fill 1 m over the highest point" in ran("check", place, *asked)
     reaction = record["reactions"][0]
     assert reaction["vertical_kN"] == pytest.approx(fill + 20 * 0.5 * 7)
     assert reaction["horizontal_kN"] == pytest.approx(side)

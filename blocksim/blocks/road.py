@@ -251,9 +251,10 @@ def with_dispersal(problem: Problem, words: str) -> Problem:
 
 @dataclass(frozen=True, kw_only=True)
 class FillAbove:
-    """Fill: its height over the highest point of the extrados [m], weight [N], and words."""
+    """Fill: its height [m] over `over`, its weight [N], and words."""
 
     height: float
+    over: str
     weight: float
     words: tuple[str, ...] = ()
 
@@ -269,6 +270,7 @@ def fill_of(problem: Problem[Any]) -> FillAbove | None:
     fills = () if maker is None else maker.built.fills
     return FillAbove(
         height=height,
+        over="the highest point" if arch is None else "the crown",
         weight=-sum(float(load.force[1]) for load in (*fills, *soil_loads(problem))),
         words=() if soil is None else soil.words,
     )

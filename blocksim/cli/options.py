@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Generator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import fields
 from pathlib import PurePath
 from typing import cast
@@ -112,6 +113,10 @@ def parameters_of(given: list[str] | None) -> dict[str, object]:
             found[name] = json_of(value.encode())
         except ValueError:
             found[name] = value
+            # Numbers that JSON has not: .4 and +0.4.
+            with suppress(ValueError):
+                if math.isfinite(float(value)):
+                    found[name] = float(value)
     return found
 
 

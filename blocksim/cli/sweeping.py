@@ -187,7 +187,7 @@ def _figure(
         both = [falls + open for falls, open in zip(falling, unknown, strict=True)]
         tone = VERDICTS[Verdict.UNDECIDED]
         lines.append(Line("falls, or undecided", across, both, tone))
-    title = f"{title_of(problem)}: share of {records} records that brings it down"
+    title = f"{title_of(problem)}: share of {counted(records, 'record')} that brings it down"
     figure = curve_figure(title, "amplitude of the record [g]", "share", lines)
     figure.axes[0].set_ylim(0, 1.02)
     return figure

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 ROUNDING = 1e-9
 """Share of gravity that is none."""
 SIZES = (
-    "span_m", "rise_m", "thickness_m", "radius_m", "depth_m", "unit_weight_kN_per_m3",
+    "span_m", "rise_m", "at", "thickness_m", "radius_m", "depth_m", "unit_weight_kN_per_m3",
 )  # fmt: skip
 FOLLOWS = {
     "tilt": {"tilt_deg"},
@@ -32,7 +32,7 @@ FOLLOWS = {
     "push": {"load"},
 }
 """Keys that follow from each parameter that any problem may have."""
-BUILT = {*SIZES[:4], "weight_kN", "fill_weight_kN", "fill_is"}
+BUILT = {*SIZES[:5], "weight_kN", "fill_weight_kN", "fill_is"}
 """Keys that follow from the parameters of a maker."""
 
 
@@ -40,6 +40,7 @@ def problem_record(problem: Problem[Any], over: str | None = None) -> ProblemRec
     """Return a problem for answers. What follows from the searched parameter is null."""
     spatial = problem.in_space
     arch, fill, spread = weighed_arch(problem), fill_of(problem), problem.dispersal
+    line = measured_line(problem)
     tilt, lean = tilt_and_lean(problem)
     said: dict[str, object] = {
         "title": problem.title,
@@ -54,7 +55,7 @@ def problem_record(problem: Problem[Any], over: str | None = None) -> ProblemRec
         "load": problem.load,
         "strength_MPa": None if problem.strength is None else problem.strength / 1e6,
         "shake": shake_record(problem),
-        **(dict.fromkeys(SIZES) if arch is None else size_record(arch)),
+        **(dict.fromkeys(SIZES) if arch is None else size_record(arch, line and line.at)),
         "weight_kN": weight_of(problem) / 1000,
         "fill_m": None if fill is None else fill.height,
         "fill_weight_kN": None if fill is None else fill.weight / 1000,
@@ -78,16 +79,20 @@ def _fixed_sizes(problem: Problem[Any], over: str) -> dict[str, object]:
     return (
         {"radius_m": maker.radius}
         if line is None
-        else {"span_m": line.span, "rise_m": line.rise}
+        else {"span_m": line.span, "rise_m": line.rise, "at": line.at}
     )
 
 
-def size_record(arch: Arch) -> dict[str, object]:
-    """Return dimensions of an arch for JSON. At eta = 2 the intrados has no span and rise."""
-    clear = line_of(arch) if arch.eta < 2 else None
+def size_record(arch: Arch, at: At | None = None) -> dict[str, object]:
+    """Return dimensions of an arch for JSON. At eta = 2 the intrados has no span and rise.
+
+    `at`: The line that was measured; the intrados if none was.
+    """
+    line = line_of(arch, at or "intrados") if at or arch.eta < 2 else None
     return {
-        "span_m": clear and clear.span,
-        "rise_m": clear and clear.rise,
+        "span_m": line and line.span,
+        "rise_m": line and line.rise,
+        "at": line and line.at,
         "thickness_m": arch.thickness,
         "radius_m": arch.radius,
         "depth_m": arch.depth,
@@ -113,7 +118,7 @@ def size_lines(problem: Problem[Any]) -> list[str]:
     live = -_live(problem)
     said: list[str] = []
     if fill is not None:
-        said.append(f"fill {fill.height:.6g} m over the crown, {fill.weight / 1000:.6g} kN")
+        said.append(f"fill {fill.height:.6g} m over {fill.over}, {fill.weight / 1000:.6g} kN")
         said += fill.words
     if live and any(load.point is not None for load in problem.live):
         said.append(f"live loads {live / 1000:.6g} kN times {problem.load:g}")

@@ -33,6 +33,7 @@ class ProblemRecord(TypedDict):
     shake: dict[str, Any] | None
     span_m: float | None
     rise_m: float | None
+    at: str | None
     thickness_m: float | None
     radius_m: float | None
     depth_m: float | None

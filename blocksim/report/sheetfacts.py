@@ -128,7 +128,7 @@ def road_facts(problem: Problem[Any]) -> list[Fact]:
     """Tell fill and what stands on the road, with its places from x = 0 on the drawing."""
     fill, facts = fill_of(problem), list[Fact]()
     if fill is not None:
-        facts.append(Fact("fill", length_words(fill.height), "over the crown"))
+        facts.append(Fact("fill", length_words(fill.height), f"over {fill.over}"))
         heavy = unit_weight(problem)
         if takes_fill(problem) and heavy is not None:
             said = f"{fill_density(problem) * heavy / 1e3:.4g} {CUBIC}"
