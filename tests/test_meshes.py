@@ -61,6 +61,25 @@ def test_a_dome_is_the_same_as_a_mesh(tmp_path: Path, kind: str) -> None:
     assert margins[0] == pytest.approx(margins[1], abs=1e-3)
 
 
+@pytest.mark.parametrize(("kind", "up"), [("obj", "y"), ("glb", "z")])
+def test_a_mesh_may_have_another_coordinate_upwards(tmp_path: Path, kind: str, up: str) -> None:
+    """A box on a table, with y upwards as an OBJ of many programs, or z as GLB of some."""
+    scene, way = trimesh.Scene(), UPRIGHT if up == "y" else np.eye(4)
+    for name, bounds in (
+        ("supports", [[-1, -1, -1], [3, 3, 0]]),
+        ("tall", [[0, 0, 0], [1, 2, 6]]),
+    ):
+        scene.add_geometry(trimesh.creation.box(bounds=bounds), name, name, transform=way)
+    made: Any = scene.export(file_type=kind)
+    path = written(tmp_path / f"one.{kind}", made if kind == "glb" else made.encode())
+    found = load_structure(path, friction=1.0, reading=Reading(unit="m", up=up))
+    (hull,) = found.assembly.blocks[0].hulls
+    assert hull.box.tolist() == [[0, 0, 0], [1, 2, 6]]
+    said = ran("check", path, "--mu", "1", "--unit", "m", "--up", up)
+    assert f"its {up} upwards" in said
+    assert "left out: it is of meshes" in refused("check", "gable", "--up", up)
+
+
 def converted(path: Path, unit: str, fixed: str | None = None) -> Problem[Any]:
     """Read a mesh by command."""
     out = path.with_suffix(".json")

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from blocksim.cli.arguments import NEEDED, argument, option
-from blocksim.cli.given import DEPTH, LAYER, MU, SNAP, TOLERANCE, UNIT
+from blocksim.cli.given import DEPTH, LAYER, MU, SNAP, TOLERANCE, UNIT, UP
 from blocksim.cli.options import named_options, require_given
 from blocksim.cli.output import picture_kind, say, write
 from blocksim.cli.subject import reading_of
@@ -32,6 +32,7 @@ def convert(
     unit: str | None = UNIT,
     layer: list[str] | None = LAYER,
     snap: float | None = SNAP,
+    up: str | None = UP,
     depth: float | None = DEPTH,
     tolerance: float | None = TOLERANCE,
     fixed: str | None = option("Blocks that stay where they are: ids, with commas."),
@@ -48,7 +49,7 @@ def convert(
         picture_kind(picture, ("png", "svg", "pdf"), "--picture")
     if drawn:
         require_given(mu=mu)
-    reading = reading_of(unit, layer, snap)
+    reading = reading_of(unit, layer, snap, up)
     with named_options():
         drawing = None if picture is None else drawing_of(source, reading)
     try:

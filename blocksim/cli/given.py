@@ -24,7 +24,7 @@ from blocksim.common.checks import (
 from blocksim.common.fields import same
 
 OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters", "tolerance", "depth",
-          "unit", "layer", "snap"}  # fmt: skip
+          "unit", "layer", "snap", "up"}  # fmt: skip
 """Options that say how anything is built, not only an arch."""
 PARAMETERS = {"alpha": "half_angle_deg"}
 """Options that are not called as the parameter that they give."""
@@ -47,6 +47,7 @@ SNAP = option(
     "Ends of lines of a drawing that are so near are one corner, in m; 1e-4 of "
     "the shorter line if left out."
 )
+UP = option("Coordinate of a mesh that points upwards, y or z; z if left out, in GLB y.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,6 +101,7 @@ class Given:
     unit: str | None = UNIT
     layer: list[str] | None = LAYER
     snap: float | None = SNAP
+    up: str | None = UP
 
     @property
     def sizes(self) -> dict[str, object]:
@@ -111,7 +113,7 @@ class Given:
     @property
     def drawn(self) -> dict[str, object]:
         """Options given of drawings."""
-        return given_of(self, "tolerance", "unit", "layer", "snap")
+        return given_of(self, "tolerance", "unit", "layer", "snap", "up")
 
     @property
     def measured(self) -> dict[str, object]:

@@ -34,7 +34,7 @@ AT_ONCE = 1 << 16
 """Bytes of a stream that are read at once, or as many as there are."""
 GIVEN = {"mu", "friction_angle"}
 """Options that mean something for many structures."""
-OF_DRAWINGS = {"unit", "layer", "snap", "tolerance"}
+OF_DRAWINGS = {"unit", "layer", "snap", "up", "tolerance"}
 """Those that mean something where drawings or meshes are among them."""
 
 
@@ -49,7 +49,7 @@ def check_each(asked: Subject, others: Mapping[str, object]) -> NoReturn:
     with named_options():
         friction = asked.given.friction
     given = asked.given
-    reading = reading_of(given.unit, given.layer, given.snap)
+    reading = reading_of(given.unit, given.layer, given.snap, given.up)
     if asked.scene == STREAM:
         # Each line has its answer, an empty one as well.
         names = ({"line": number} for number in count(1))

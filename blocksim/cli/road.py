@@ -28,7 +28,7 @@ from blocksim.kinds.circular import LEAST_DENSITY, CircularArch
 from blocksim.limit.crushing import require_sizes
 
 IN_SPACE = {"parameters", "mu", "friction_angle", "unit_weight", "tolerance", "unit", "layer",
-            "load", "push", "tilt", "azimuth", "gravity", "shake", "amplitude",
+            "up", "load", "push", "tilt", "azimuth", "gravity", "shake", "amplitude",
             "duration"}  # fmt: skip
 """Options that mean something in space."""
 

@@ -6,7 +6,7 @@ import math
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 from blocksim.arch.dimensions import require_unit_weight
 from blocksim.blocks.problem import Problem
@@ -212,7 +212,7 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem[Any]:
                 density,
                 tolerance=given.tolerance,
                 depth=given.depth,
-                reading=reading_of(given.unit, given.layer, given.snap),
+                reading=reading_of(given.unit, given.layer, given.snap, given.up),
             )
     except InputError as error:
         name = error.field.partition("[")[0]
@@ -224,8 +224,10 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem[Any]:
     return loaded(built, given, loading)
 
 
-def reading_of(unit: str | None, layer: list[str] | None, snap: float | None = None) -> Reading:
-    """Read what `--unit`, `--layer` and `--snap` say of a drawing."""
+def reading_of(
+    unit: str | None, layer: list[str] | None, snap: float | None = None, up: str | None = None
+) -> Reading:
+    """Read what `--unit`, `--layer`, `--snap` and `--up` say of a drawing or a mesh."""
     from blocksim.reading.asked import ROLES, Reading
 
     layers: dict[str, list[str]] = {}
@@ -238,7 +240,8 @@ def reading_of(unit: str | None, layer: list[str] | None, snap: float | None = N
     with suppress(TypeError, ValueError):
         metres = float(unit)  # type: ignore[arg-type]
     with named_options():
-        return Reading(unit=metres, layers=layers, snap=snap)
+        upwards = cast('Literal["y", "z"] | None', up)
+        return Reading(unit=metres, layers=layers, snap=snap, up=upwards)
 
 
 def _is_place(scene: str) -> bool:

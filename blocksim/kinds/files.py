@@ -171,8 +171,10 @@ def drawing_of(path: AnyPath, reading: Reading = AS_DRAWN) -> Drawing:
 def require_undrawn(reading: Reading) -> None:
     """Refuse what is said of a drawing where there is none."""
     named = ", ".join(reading.layers) or None
-    for name, value in (("unit", reading.unit), ("layer", named), ("snap", reading.snap)):
-        require(value is None, name, value, "left out: it is of drawings")
+    given = {"unit": reading.unit, "layer": named, "snap": reading.snap, "up": reading.up}
+    for name, value in given.items():
+        of = "meshes" if name == "up" else "drawings"
+        require(value is None, name, value, f"left out: it is of {of}")
 
 
 def written(text: bytes, language: str) -> object:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 from blocksim.common.checks import LENGTH, is_number, require
 
@@ -38,6 +39,8 @@ class Reading:
     snap : float, optional
         Ends of lines that are so near to each other are one corner [m]; by default a
         ten-thousandth of the shorter line.
+    up : {"y", "z"}, optional
+        Coordinate of a mesh that points upwards; by default z, in GLB y.
 
     Raises
     ------
@@ -53,6 +56,7 @@ class Reading:
     unit: float | str | None = None
     layers: Mapping[str, Sequence[str]] = field(default_factory=dict[str, Sequence[str]])
     snap: float | None = None
+    up: Literal["y", "z"] | None = None
 
     def __post_init__(self) -> None:
         """Check names and range."""
@@ -62,6 +66,7 @@ class Reading:
             require(ok, "unit", self.unit, allowed)
         if self.snap is not None:
             LENGTH.require("snap", self.snap)
+        require(self.up in {None, "y", "z"}, "up", self.up, "y or z")
         roles = self.roles
         for role, names in self.layers.items():
             require(role in ROLES, "layer", role, f"for one of {', '.join(ROLES)}")

@@ -181,6 +181,7 @@ def drawing_of(
             lines[role == "supports"].append(shape)
         require(len(blocks) <= MOST_BLOCKS, "blocks", "more", f"at most {MOST_BLOCKS}")
     reading.require_layers(seen)
+    require(reading.up is None, "up", reading.up, "left out: it is of meshes")
     moved = 0.0
     metres = reading.unit_of(unit)
     # Without a unit it is refused; what it would be in the unit m is drawn nevertheless.

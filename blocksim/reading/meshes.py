@@ -38,11 +38,12 @@ Facets = NDArray[np.int64]
 
 
 def read_mesh(path: AnyPath, reading: Reading) -> dict[str, Any]:
-    """Read a mesh of closed bodies, z upwards; of GLB, whose y is upwards, turned.
+    """Read a mesh of closed bodies; what has y upwards, as GLB has, is turned.
 
     `path`: Ends in .obj, .stl, .ply or .glb.
-    `reading`: Its unit, where the file says none; names of objects as layers. An object of the
-        name `supports`, or of one that is named for it, stays where it is.
+    `reading`: Its unit, where the file says none, and what points upwards; names of objects as
+        layers. An object of the name `supports`, or one that is named for it, stays where it
+        is.
     Returns: As of a structure file in space, without friction.
     """
     ending = Path(path).suffix.lower()[1:]
@@ -53,6 +54,7 @@ def read_mesh(path: AnyPath, reading: Reading) -> dict[str, Any]:
             "--unit", MISSING, f"given, one of {', '.join(UNITS)}: a mesh has none"
         )
     require(reading.snap is None, "snap", reading.snap, "left out: it is of drawings")
+    up = reading.up or ("y" if ending == "glb" else "z")
     blocks: list[dict[str, Any]] = []
     seen: set[str] = set()
     for name, points, facets in _objects(content, ending):
@@ -61,7 +63,7 @@ def read_mesh(path: AnyPath, reading: Reading) -> dict[str, Any]:
         role = reading.roles.get(name.casefold(), reading.roles.get(kind))
         if role == "ignored":
             continue
-        corners = points[:, [0, 2, 1]] * [1, -1, 1] if ending == "glb" else points
+        corners = points[:, [0, 2, 1]] * [1, -1, 1] if up == "y" else points
         bodies = list(_bodies(facets))
         for at, body in enumerate(bodies):
             several = len(bodies) > 1 or not name
@@ -70,7 +72,7 @@ def read_mesh(path: AnyPath, reading: Reading) -> dict[str, Any]:
             found["vertices"] = (np.array(found["vertices"]) * unit.metres).round(12).tolist()
             blocks.append(found)
     reading.require_layers(seen)
-    return {"notes": [f"mesh, z upwards; {unit.said}"], "blocks": blocks}
+    return {"notes": [f"mesh, its {up} upwards; {unit.said}"], "blocks": blocks}
 
 
 def convex_block(name: str, points: Array, facets: Facets, *, fixed: bool) -> dict[str, Any]:

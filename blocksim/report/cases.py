@@ -59,7 +59,10 @@ def cases_lines(answer: Cases) -> list[str]:
         cells = [f"{cell:>{most}}" for cell, most in zip(row[:3], wide, strict=False)]
         lines.append(f"  {'  '.join(cells)}  {row[3]:<{wide[3]}}  {row[4]}")
     told = (
-        (0, "  used    share of width, friction and strength that the safest state needs"),
+        (
+            0,
+            "  used    least share of width and friction that suffices, or of strength if more",
+        ),
         (2, "  thrust  least to greatest, in kN/m, or kN where blocks differ in depth"),
     )
     return lines + [words for at, words in told if any(row[at] != "-" for row in rows[1:])]
