@@ -20,6 +20,7 @@ from worlds import DIRECT, joint_motion
 from blocksim import (
     CircularArch,
     Column,
+    InputError,
     JointState,
     Verdict,
     bracket,
@@ -32,7 +33,7 @@ from blocksim.ask.moved import spread_by, thrusts_over
 from blocksim.ask.push import borne, curve, pushed
 from blocksim.ask.spread import Spreading
 from blocksim.engines.moving import OnMovingSupports
-from blocksim.limit.spreading import follow
+from blocksim.limit.spreading import displaced_at, follow
 
 pytestmark = pytest.mark.usefixtures("wide_window")
 
@@ -98,6 +99,21 @@ def test_closed_contacts_stay_and_open_ones_do_not_overlap() -> None:
     assert shift == pytest.approx([-reach, reach], rel=1e-9)
 
 
+WIDE, HIGH = 0.2, 1.0
+"""Of two slabs that lean on each other: width of their feet, height."""
+
+
+def slabs(foot: float, **more: Any) -> Any:
+    """Two slabs on feet that end so far from the middle."""
+    blocks = [
+        {"id": "west", "vertices": [[-2, -1], [-foot, -1], [-foot, 0], [-2, 0]], "fixed": True},
+        {"id": "east", "vertices": [[foot, -1], [2, -1], [2, 0], [foot, 0]], "fixed": True},
+        {"id": "left", "vertices": [[-1, 0], [-1 + WIDE, 0], [0, HIGH - WIDE], [0, HIGH]]},
+        {"id": "right", "vertices": [[1 - WIDE, 0], [1, 0], [0, HIGH], [0, HIGH - WIDE]]},
+    ]
+    return structure_of({"friction": "inf", "blocks": blocks, **more})
+
+
 @pytest.mark.parametrize("steps", [None, pytest.param(17, marks=pytest.mark.long)])
 def test_a_three_hinged_arch_of_two_blocks_falls_when_it_is_flat(steps: int | None) -> None:
     """Two slabs lean on each other, on the inner corners of their feet and on their tops.
@@ -105,22 +121,78 @@ def test_a_three_hinged_arch_of_two_blocks_falls_when_it_is_flat(steps: int | No
     As the feet move apart these three hinges come into line: there nothing holds them, from
     wherever the last position on the way happens to be.
     """
-    wide, high = 0.2, 1.0
-    slabs = [
-        {"id": "left", "vertices": [[-1, 0], [-1 + wide, 0], [0, high - wide], [0, high]]},
-        {"id": "right", "vertices": [[1 - wide, 0], [1, 0], [0, high], [0, high - wide]]},
-    ]
-    feet = [
-        {"id": "west", "vertices": [[-2, -1], [-0.5, -1], [-0.5, 0], [-2, 0]], "fixed": True},
-        {"id": "east", "vertices": [[0.5, -1], [2, -1], [2, 0], [0.5, 0]], "fixed": True},
-    ]
-    problem = structure_of({"friction": "inf", "blocks": [*feet, *slabs]})
-    flat = 2 * (math.hypot(1 - wide, high) - (1 - wide))
+    problem = slabs(1 - WIDE)
+    flat = 2 * (math.hypot(1 - WIDE, HIGH) - (1 - WIDE))
     moved = Spreading(problem)
     path = follow(moved.problem, 1.0, steps) if steps else moved.path
     assert JointState.CLOSED not in path.events[0].after.states
     assert path.ends == "collapse"
     assert path.value == pytest.approx(flat, rel=1e-8)
+
+
+def test_blocks_that_meet_beside_their_joints_are_followed_no_farther() -> None:
+    """Slabs lie down on their feet, which reach under them, before the hinges are in line."""
+    problem = slabs(0.5)
+    # Turned by half a right angle the side of a slab, which rises by that, is level.
+    lies = 2 * ((1 - WIDE + HIGH) / math.sqrt(2) - (1 - WIDE))
+    path = Spreading(problem).path
+    assert [event.what for event in path.events] == ["hinges", "meets"]
+    assert path.value == pytest.approx(lies, abs=1e-5)
+    found = bracket(problem, over="spread", method="limit")
+    assert (found.limit, found.high) == (None, None)
+    with pytest.raises(InputError, match="farther is not followed"):
+        spread_by(problem, 0.96)
+
+
+def test_direct_says_that_it_gave_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Blocks that are taken for fast, and stay as supports stop, have not fallen."""
+    monkeypatch.setattr("blocksim.ask.spread.FAST", 0.1)
+    seen = Spreading(slabs(0.5)).slowly(0.01, 1.0)
+    assert (seen.high, seen.solved) == (None, False)
+
+
+def test_supports_that_only_jam_blocks_do_not_make_them_fall() -> None:
+    """A flat arch is pressed by any thrust: its supports cannot come nearer to each other."""
+    nearer = [{"block": "right", "direction": [-1, 0]}]
+    problem = structure_of({"kind": "flat-arch", "friction": "inf", "move": nearer})
+    path = Spreading(problem).path
+    assert (path.ends, path.value, path.first_fall) == ("jams", 0.0, None)
+    assert bracket(problem, over="spread", method="limit").limit is None
+    with pytest.raises(InputError, match="farther is not followed"):
+        spread_by(problem, 1e-3)
+
+
+def test_hinges_that_have_just_formed_are_no_fall() -> None:
+    """As hinges form no force is left at their other ends, but for round-off."""
+    load = {"block": "2.1", "point": [0.27101424633870824, 0.01741393711878459]}
+    load["force"] = [0, -0.011068542973853908]
+    moves = [
+        {"block": "left", "direction": [-0.4657311567881792, -0.6277100910758697]},
+        {
+            "block": "right",
+            "direction": [0.7965959400638762, -0.838370705633998],
+            "turn_deg": 0.9438342291875843,
+        },
+    ]
+    dead = [{"body": [0, -1]}, load]
+    problem = structure_of({"kind": "arcade", "friction": "inf", "move": moves, "dead": dead})
+    path = follow(problem, 0.02, 1)
+    assert [event.what for event in path.events] == ["hinges", "snaps"]
+    assert path.first_fall > 0.018
+    assert check(replace(displaced_at(problem, path, 0.018), moves=())).proved
+
+
+@pytest.mark.parametrize("turn", [60.0, 36000.0])
+def test_a_support_that_turns_tips_a_block(turn: float) -> None:
+    """When the centre is above the edge, however fast it turns as the parameter grows."""
+    base = {"id": "base", "vertices": [[-2, -1], [3, -1], [3, 0], [-2, 0]], "fixed": True}
+    block = {"id": "block", "vertices": [[0, 0], [1, 0], [1, 2], [0, 2]]}
+    moves = [{"block": "base", "direction": [0, 0], "turn_deg": turn}]
+    problem = structure_of({"friction": "inf", "blocks": [base, block], "move": moves})
+    tips = math.degrees(math.atan(0.5)) / turn
+    assert bracket(problem, over="spread", method="limit").limit == pytest.approx(
+        tips, rel=1e-8
+    )
 
 
 SPREADING = (

@@ -29,7 +29,7 @@ from blocksim.simulation.recording import Recording
 SIDES = (-1.0, 1.0)
 """Ways of the left and the right support where a file does not say them."""
 FARTHEST = 1.0
-"""How far supports move at most [size]."""
+"""How far supports move at most [size]; what turns, turns by half a turn at most."""
 SPEED, STEP = 1e-3, 0.05
 """Of the supports [size/sqrt(size/g)], and step of time [sqrt(size/g)], at first."""
 SEEN, AFTER = 0.01, 20.0
@@ -41,6 +41,8 @@ SIDEWAYS = 0.5
 """Speed with which blocks begin, over that of their supports."""
 FAST = 30.0
 """Speed of blocks, over that of their supports, from which on they fall."""
+AGAIN = 50
+"""How often supports go on at most where blocks that were fast stay as they stop."""
 STARTS = 1e-5
 """Acceleration from which on blocks move on supports that have stopped [g]."""
 
@@ -52,7 +54,8 @@ class Slow:
     `low`: Farthest the supports were when the blocks stayed if they stopped [m]; None where
         they did not even at the start.
     `high`: Nearest at which the blocks fell although they stopped; None where they never fell.
-    `solved`: Whether every step was.
+    `solved`: Whether every step was, and the supports went on until blocks fell, or as far as
+        asked.
     `runs`: How often the supports were stopped.
     """
 
@@ -95,10 +98,23 @@ class Spreading:
         )
         return replace(asked, moves=moves)
 
+    @cached_property
+    def fastest(self) -> float:
+        """How much faster than the parameter joints on a support move, at least 1."""
+        assembly = self.problem.assembly
+        found = 1.0
+        for move in self.problem.moves:
+            on = [each for each in assembly.joints if each.support == move.support]
+            ends = np.array([end for each in on for end in (each.inner, each.outer)])
+            arm = float(np.hypot(*(ends.reshape(-1, 2) - move.about).T).max(initial=0.0))
+            turned = max(arm, assembly.size / math.pi) * abs(move.turn)
+            found = max(found, math.hypot(*move.direction) + turned)
+        return found
+
     @property
     def farthest(self) -> float:
-        """How far supports move at most [m]."""
-        return FARTHEST * self.problem.assembly.size
+        """Largest value of the parameter, at which supports are as far as they go [m]."""
+        return FARTHEST * self.problem.assembly.size / self.fastest
 
     @cached_property
     def path(self) -> Path:
@@ -162,25 +178,32 @@ class Spreading:
             stopped.place(*frame)
             return stopped.starts() < STARTS
 
-        speed, runs, whole = SPEED, 0, True
+        speed, runs, whole = SPEED / self.fastest, 0, True
         world = OnMovingSupports(problem, settings, speed)
         # Blocks that mirror each other would balance where any breath lets them fall.
         sideways = np.zeros_like(world.poses())
-        sideways[: len(problem.assembly.blocks), 0] = SIDEWAYS * speed
+        sideways[: len(problem.assembly.blocks), 0] = SIDEWAYS * SPEED
         world.push(sideways)
-        frames = _run(world, highest, FAST * speed, progress)
+        frames, again = _run(world, highest, FAST * speed * self.fastest, progress), 0
         while True:
             whole = whole and solved(world)
             last, more = _last(frames, stays)
             runs += more
             low = None if last < 0 else frames[last][0]
             high = None if last + 1 == len(frames) else frames[last + 1][0]
-            if low is None or high is None or high - low <= tol * high:
+            if high is not None and low is not None and high - low > tol * high:
+                speed *= 0.9 * tol * high / (high - low)
+            elif low is None or high is not None or low >= highest or not whole:
                 break
-            speed *= 0.9 * tol * high / (high - low)
+            elif again == AGAIN:
+                whole = False
+                break
+            else:
+                # They were fast, but did not fall: they were caught, or hinges are near a line.
+                again += 1
             world = OnMovingSupports(problem, settings, speed)
             world.place(*frames[last])
-            frames = _run(world, highest, FAST * speed, progress)
+            frames = _run(world, highest, FAST * speed * self.fastest, progress)
         return Slow(low=low, high=high, solved=whole, runs=runs)
 
     def recorded(self, progress: Progress = silent) -> Recording:
@@ -193,7 +216,7 @@ class Spreading:
         settings = USUAL
         level = all(move.direction[1] >= 0 and not move.turn for move in self.problem.moves)
         deep = SHALLOW if level else DEEP
-        world = OnMovingSupports(self.problem, settings, SEEN, deep)
+        world = OnMovingSupports(self.problem, settings, SEEN / self.fastest, deep)
         stride = round(FRAME / settings.step)
         times, poses, fell = [0.0], [world.poses()], math.inf
         while world.value < self.farthest and times[-1] < fell + AFTER and solved(world):
@@ -265,7 +288,8 @@ def _last(frames: Sequence[_At], stays: Callable[[_At], bool]) -> tuple[int, int
 def event_words(event: Event) -> str:
     """Say what happens, and where."""
     said = ", ".join(f"{joint.a}-{joint.b} {joint.state}" for joint in event.joints)
-    return f"at {event.value:.6g} m {_WORDS[event.what]}: {said}"
+    what = _WORDS[event.what] if said or event.what != "hinges" else "no joint opens"
+    return f"at {event.value:.6g} m {what}{': ' if said else ''}{said}"
 
 
 _WORDS = {
@@ -275,6 +299,9 @@ _WORDS = {
     "collapse": "it falls",
     "falls-slides": "it gives way, and a joint slides, which is not followed",
     "falls-parts": "it gives way, and a joint parts, which is not followed",
+    "falls-meets": "it gives way, and blocks meet that did not touch, which is not followed",
     "slides": "a joint begins to slide, which is not followed",
     "parts": "a joint parts, which is not followed",
+    "meets": "blocks meet that did not touch, which is not followed",
+    "jams": "blocks jam: they follow only if joints slide, which is not followed",
 }

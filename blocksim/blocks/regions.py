@@ -122,6 +122,27 @@ def overlaps(
     return sorted(found)[:most]
 
 
+def depths(
+    bodies: Sequence[Sequence[Array]], fixed: NDArray[np.bool_]
+) -> dict[tuple[int, int], float]:
+    """Find how deep bodies that meet are in each other [m], but fixed ones; 0 where they touch.
+
+    `bodies`, sequence of sequences of (k, 2): Convex ones of each body.
+    """
+    owner = np.repeat(np.arange(len(bodies)), [len(each) for each in bodies])
+    parts = [part for each in bodies for part in each]
+    regions = [shapely.Polygon(part) for part in parts]
+    looked: Any = shapely.STRtree(regions).query(regions, predicate="intersects")
+    near: list[tuple[int, int]] = looked.T.tolist()
+    found: dict[tuple[int, int], float] = {}
+    for one, other in near:
+        pair = int(owner[one]), int(owner[other])
+        if pair[0] < pair[1] and not (fixed[pair[0]] and fixed[pair[1]]):
+            deep = max(found.get(pair, 0.0), _into(parts[one], parts[other]))
+            found[pair] = deep
+    return found
+
+
 def _into(one: Array, other: Array) -> float:
     """Return how deep convex polygons are in each other, along the normal where it is least."""
     apart = -math.inf

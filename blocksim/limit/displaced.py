@@ -2,7 +2,8 @@
 
 Contacts that are closed stay so while blocks are carried to another position of the supports;
 which of them open, and whether forces of equilibrium fit into them, the linear programme of the
-displaced blocks tells. Contacts neither slip nor part here: where they would, it says so.
+displaced blocks tells. Contacts neither slip nor part here, and no new ones are followed: where
+they would, and where blocks meet that did not touch, it says so.
 """
 
 from __future__ import annotations
@@ -16,16 +17,19 @@ from numpy.typing import NDArray
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Block, Joint, Support
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Load, Problem
+from blocksim.blocks.regions import depths
 from blocksim.limit.programme import equilibrium
 
 Closed = NDArray[np.bool_]
-Lost = Literal["slides", "parts"]
+Lost = Literal["slides", "parts", "jams", "meets"]
 OPENS = 1e-7
 """Rate of a contact, over the largest of any block, from which on it opens or slips."""
 SHUT = 1e-11
 """Overlap of a contact that is round-off [size]."""
 OFF = 1e-9
 """How far closed contacts may be apart; the blocks cannot follow where it is more [size]."""
+MEETS = 1e-6
+"""How deep blocks are in each other, but at joints, where they have met [size]."""
 ENOUGH = 1e-9
 """Lack of force at which blocks still rest [mean weights]."""
 RANK = 1e-9
@@ -82,6 +86,11 @@ class Displaced:
         closed = np.ones((len(assembly.joints), 2), dtype=np.bool_)
         closed[self._corner, 1] = False
         self.start = Frame(value=0.0, poses=assembly.built[:-1], closed=closed)
+        self._drawn = self._depths(self.start)
+        for joint, pair in zip(assembly.joints, np.sort(self._sides).tolist(), strict=True):
+            # A joint lies midway in the gap that it closes.
+            deep = self._drawn.get(tuple(pair), 0.0)
+            self._drawn[tuple(pair)] = max(deep, abs(joint.gap))
 
     def _placed(self, value: float) -> Array:
         """Poses of the supports, as turned about the origin and then shifted."""
@@ -121,6 +130,18 @@ class Displaced:
         """How far the nearest open contact is from closing [size]; below 0 beyond that."""
         return float(np.where(frame.closed, np.inf, self._gaps(frame)).min()) + SHUT
 
+    def room(self, frame: Frame) -> float:
+        """How much deeper blocks that meet can be in each other [size]; below 0 beyond that."""
+        found = self._depths(frame)
+        deeper = (deep - self._drawn.get(pair, 0.0) for pair, deep in found.items())
+        return MEETS - max(deeper, default=0.0) / self.size
+
+    def _depths(self, frame: Frame) -> dict[tuple[int, int], float]:
+        """Find how deep blocks and supports are in each other [m], each pair that touches."""
+        blocks = self._blocks_at(frame)
+        bodies = [each.polygons for each in (*blocks, *self._supports_at(frame.value))]
+        return depths(bodies, np.arange(len(bodies)) >= self._count)
+
     def shut(self, frame: Frame) -> Frame:
         """Close the contacts that touch."""
         touching = self._gaps(frame) <= 10 * SHUT
@@ -141,14 +162,8 @@ class Displaced:
 
     def problem(self, frame: Frame) -> Problem:
         """Return the problem as it lies, with the contacts that are closed."""
-        asked, size = self._problem, self.size
-        places = frame.poses.copy()
-        places[:, :2] *= size
-        points = self._points(frame) * size
-        blocks = tuple(
-            moved(block, pose)
-            for block, pose in zip(asked.assembly.blocks, places, strict=True)
-        )
+        asked = self._problem
+        points = self._points(frame) * self.size
         joints: list[Joint] = []
         for index, joint in enumerate(asked.assembly.joints):
             ends = np.flatnonzero(frame.closed[index])
@@ -179,13 +194,20 @@ class Displaced:
             asked,
             assembly=replace(
                 asked.assembly,
-                blocks=blocks,
+                blocks=self._blocks_at(frame),
                 joints=tuple(joints),
                 supports=self._supports_at(frame.value),
             ),
             dead=self._carried_loads(asked.dead, frame),
             live=self._carried_loads(asked.live, frame),
         )
+
+    def _blocks_at(self, frame: Frame) -> tuple[Block, ...]:
+        """Return the blocks where they lie."""
+        places = frame.poses.copy()
+        places[:, :2] *= self.size
+        blocks = self._problem.assembly.blocks
+        return tuple(moved(block, pose) for block, pose in zip(blocks, places, strict=True))
 
     def _supports_at(self, value: float) -> tuple[Support, ...]:
         """Return the supports where they have moved to."""

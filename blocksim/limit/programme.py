@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -171,7 +171,7 @@ def _parts(cones: Cones, found: Optimum) -> Array:
     return found.values[:-1] + found.values[-1] * cones.bounded
 
 
-def settling(problem: Problem, supports: Array) -> Array | None:
+def settling(problem: Problem, supports: Array) -> Array | Literal["jams"] | None:
     """Find how blocks at rest follow supports that begin to move.
 
     Of the motions that no joint forbids it is the one that loses most potential energy; its
@@ -181,11 +181,14 @@ def settling(problem: Problem, supports: Array) -> Array | None:
     `problem`: In its plane, at rest.
     `supports`, (supports, 3): Velocities x, y of each support where it meets the origin of
         coordinates, and its rate of rotation; lengths in units of the size.
-    Returns (blocks, 3) or None: Velocities x, y and rotation of the blocks; None where there is
-        no equilibrium.
+    Returns (blocks, 3), "jams" or None: Velocities x, y and rotation of the blocks; "jams"
+        where joints forbid all motions, as forces withstand that of the supports without
+        bound; None where there is no equilibrium.
     """
     cones = Cones(problem)
     found = extreme(cones, cones.at_supports(supports), problem.applied_forces())
+    if found.unbounded:
+        return "jams"
     return cones.rates(found.prices) if found.exists else None
 
 

@@ -12,7 +12,8 @@ other do, one of them may balance like a pencil on its tip: of such a path there
 nature. Of the motions with which blocks rest a little farther on they take the one of least
 energy.
 
-Contacts neither slip nor part here. Where they would, the path ends and says so.
+Contacts neither slip nor part here, and no new ones are followed. Where they would, where
+blocks meet that did not touch, and where they jam, the path ends and says so.
 """
 
 from __future__ import annotations
@@ -30,8 +31,8 @@ from blocksim.common.later import optimize
 from blocksim.limit.displaced import ENOUGH, Displaced, Frame, Lost
 from blocksim.limit.programme import falling, settling
 
-Ends = Literal["collapse", "slides", "parts", "range"]
-FALLS = {"snaps", "collapse", "falls-slides", "falls-parts"}
+Ends = Literal["collapse", "range"] | Lost
+FALLS = {"snaps", "collapse", "falls-slides", "falls-parts", "falls-meets"}
 """Events in which blocks move on supports at rest."""
 PUSH = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3)
 """How far beyond an event it is looked at, the first that tells [size]."""
@@ -50,8 +51,9 @@ class Event:
     """Something that happens at one position of the supports.
 
     `what`: `hinges` form first, `moves`: one closes and another opens, `snaps`: the same by a
-        fall that is caught, `collapse`, `falls-slides` or `falls-parts`: a fall in which a
-        joint slides or parts, which is not followed to its end; `slides`, `parts`.
+        fall that is caught, `collapse`, `falls-slides`, `falls-parts` or `falls-meets`: a fall
+        in which a joint slides or parts, or blocks meet that did not touch, which is not
+        followed to its end; `slides`, `parts`, `meets`; `jams`: no joint lets blocks follow.
     `before`, `after`: The same position, the hinges before and after it.
     """
 
@@ -70,8 +72,8 @@ class Path:
     """What blocks do as their supports move.
 
     `frames`: From where they were built to the last position of rest.
-    `ends`: `collapse`, `range` (the supports moved as far as asked), or `slides`, `parts`: what
-        joints would do at rest, which is not followed.
+    `ends`: `collapse`, `range` (the supports moved as far as asked), or what would come at rest
+        and is not followed: `slides`, `parts`, `meets`, `jams`.
     """
 
     frames: tuple[Frame, ...]
@@ -112,7 +114,7 @@ def follow(problem: Problem, highest: float, steps: int = 100) -> Path:
     if blocks.margin(frame) < -ENOUGH:
         return Path(frames=(frame,), events=(), ends="collapse")
     frame, lost = _follows(blocks, frame)
-    events.append(Event(what="hinges", before=frames[0], after=frame))
+    events.append(Event(what=lost or "hinges", before=frames[0], after=frame))
     frames.append(frame)
     grid = np.linspace(0, highest, steps + 1)[1:].tolist()
     while lost is None and grid:
@@ -133,7 +135,7 @@ def follow(problem: Problem, highest: float, steps: int = 100) -> Path:
                 events.append(Event(what=what, before=before, after=after))
                 return Path(frames=tuple(frames), events=tuple(events), ends="collapse")
             at = caught
-        frame, lost = _follows(blocks, at)
+        frame, lost = (before, what) if what == "meets" else _follows(blocks, at)
         events.append(Event(what=lost or what, before=before, after=frame))
         frames += [before, frame]
     return Path(frames=tuple(frames), events=tuple(events), ends=lost or "range")
@@ -156,13 +158,18 @@ def displaced_at(problem: Problem, path: Path, value: float) -> Problem:
 
 def _first_event(
     blocks: Displaced, frame: Frame, ahead: Frame
-) -> tuple[Literal["moves", "snaps"] | None, Frame]:
+) -> tuple[Literal["moves", "snaps", "meets"] | None, Frame]:
     """Find what happens first on the way from a frame to the next."""
-    moves = blocks.closing(ahead) < 0
-    found = _where(blocks, blocks.closing, frame, ahead) if moves else ahead
+    what, found = None, ahead
+    if blocks.closing(ahead) < 0:
+        what, found = "moves", _where(blocks, blocks.closing, frame, ahead)
     if blocks.margin(found) < -ENOUGH:
-        return "snaps", _where(blocks, blocks.margin, frame, found)
-    return ("moves", blocks.shut(found)) if moves else (None, ahead)
+        # Where hinges have just formed none of their force is left.
+        what = "snaps"
+        found = _where(blocks, lambda each: blocks.margin(each) + ENOUGH, frame, found)
+    if blocks.room(found) < 0:
+        return "meets", _where(blocks, blocks.room, frame, found)
+    return what, blocks.shut(found) if what == "moves" else found
 
 
 def _where(
@@ -206,6 +213,8 @@ def _falls(blocks: Displaced, frame: Frame) -> tuple[Frame | None, Frame | None,
         ahead = blocks.carried(now, now.value, now.poses + WAY / blocks.fastest(rates) * rates)
         shuts = blocks.closing(ahead) < 0
         now = blocks.shut(_where(blocks, blocks.closing, now, ahead)) if shuts else ahead
+        if blocks.room(now) < 0:
+            return None, first, "meets"
         way += WAY / 100 if shuts else WAY
     return None, first, None
 
@@ -225,13 +234,13 @@ def _follows(blocks: Displaced, frame: Frame) -> tuple[Frame, Lost | None]:
     """Open contacts as the supports move on; return what else a joint does, which ends it."""
     lies, speeds = blocks.problem(frame), blocks.speeds(frame.value)
     rates = settling(lies, speeds)
-    if rates is None:
-        return frame, None
+    if rates is None or isinstance(rates, str):
+        return frame, rates
     after, lost = blocks.opened(frame, rates, 1.0)
     found = [after]
     for way in () if lost else _ways(blocks, after):
         leaning = settling(_pushed(lies, way), speeds)
-        if leaning is None:
+        if leaning is None or isinstance(leaning, str):
             continue
         turned, slips = blocks.opened(frame, leaning, 1.0)
         if slips is None and blocks.closing(_ahead(blocks, turned)) > 0:
