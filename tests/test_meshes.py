@@ -104,6 +104,10 @@ def test_boxes_that_touch_are_told_apart_and_turned_ones_taken(tmp_path: Path) -
     assert [each.name for each in (*found.supports, *found.blocks)] == ["1", "2"]
     (hull,) = found.blocks[0].hulls
     assert np.ptp(hull.corners, axis=0) == pytest.approx([0.3048] * 3, rel=1e-6)
+    # A body has its number for a name, and may be a support by it.
+    asked = ("check", path, "--mu", "1", "--unit", "ft", "--layer")
+    assert "1 block, 1 joint" in ran(*asked, "supports=1")
+    assert "one of the file's: 1, 2" in refused(*asked, "supports=3")
 
 
 def test_blocks_of_a_glb_are_called_what_objects_are(tmp_path: Path) -> None:

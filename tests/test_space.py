@@ -1,5 +1,6 @@
 """Blocks in space, held to published cases, closed forms, own programmes and symmetry."""
 
+import itertools
 import json
 import math
 import re
@@ -16,6 +17,7 @@ from kind_cases import KINDS
 from matplotlib.collections import PolyCollection
 from matplotlib.text import Text
 from running import inside
+from scipy.spatial import transform
 from space_cases import GROUND, NAMES, box, case, enclosed, problem_of, rotation, tower
 from structure_cases import case as plane_case
 from structure_cases import names as plane_names
@@ -40,8 +42,9 @@ from blocksim import (
     structure_of,
 )
 from blocksim.blocks.acting import with_push
+from blocksim.blocks.space.contact import Contact, contact
 from blocksim.blocks.space.extruded import way_of_prisms
-from blocksim.blocks.space.polyhedron import frame
+from blocksim.blocks.space.polyhedron import Polyhedron, frame
 from blocksim.common.errors import InputError
 from blocksim.common.fields import fields_of
 from blocksim.limit.space import can_rest, largest_load
@@ -741,3 +744,40 @@ def test_a_joint_that_is_given_lies_on_its_blocks_and_points_from_one_to_the_oth
     ):
         with pytest.raises(InputError, match=said):
             structure_of(box_on_table(**wrong))
+
+
+BOX = np.array(list(itertools.product((-0.5, 0.5), repeat=3)))
+EDGES = [
+    (a, b) for a, b in itertools.combinations(range(8), 2) if (BOX[a] != BOX[b]).sum() == 1
+]
+
+
+def test_edges_that_cross_touch_whatever_the_slack() -> None:
+    """Boxes nearly level, pushed together until an edge of each meets at a point of both.
+
+    Faces that all but part them hid that point where the slack was more than they overlap.
+    """
+    random, seen = np.random.default_rng(7), 0
+    while seen < 150:
+        one = BOX * random.uniform(0.3, 1, 3)
+        turn = transform.Rotation.from_euler("xyz", random.normal(0, 0.05, 3))
+        other = turn.apply(BOX * random.uniform(0.3, 1, 3))
+        (a, b), (c, d) = EDGES[random.integers(12)], EDGES[random.integers(12)]
+        across = np.cross(one[b] - one[a], other[d] - other[c])
+        if np.linalg.norm(across) < 0.05:
+            continue
+        normal = across / np.linalg.norm(across) * np.sign(across @ one[a])
+        place = one[a] + random.uniform(0.1, 0.9) * (one[b] - one[a])
+        other += place - other[c] - random.uniform(0.1, 0.9) * (other[d] - other[c])
+        # The plane along both edges has a box on either side.
+        if (one @ normal).max() > place @ normal + 1e-9:
+            continue
+        if (other @ normal).min() < place @ normal - 1e-9:
+            continue
+        seen += 1
+        for slack in (1e-4, 1e-3):
+            found = contact(
+                Polyhedron(one).with_slack(slack), Polyhedron(other).with_slack(slack), slack
+            )
+            assert isinstance(found, Contact)
+            assert found.gap == pytest.approx(0.0, abs=slack)

@@ -61,14 +61,16 @@ def read_mesh(path: AnyPath, reading: Reading) -> dict[str, Any]:
         kind = re.sub(r"[._ -]*\d+$", "", name).casefold()
         seen |= {name, kind}
         role = reading.roles.get(name.casefold(), reading.roles.get(kind))
-        if role == "ignored":
-            continue
         corners = points[:, [0, 2, 1]] * [1, -1, 1] if up == "y" else points
         bodies = list(_bodies(facets))
         for at, body in enumerate(bodies):
             several = len(bodies) > 1 or not name
             own = f"{name}.{at + 1}".lstrip(".") if several else name
-            found = convex_block(own, corners, body, fixed=role == "supports")
+            seen.add(own)
+            mine = reading.roles.get(own.casefold(), role)
+            if mine == "ignored":
+                continue
+            found = convex_block(own, corners, body, fixed=mine == "supports")
             found["vertices"] = (np.array(found["vertices"]) * unit.metres).round(12).tolist()
             blocks.append(found)
     reading.require_layers(seen)

@@ -50,18 +50,37 @@ def contact(first: Polyhedron, second: Polyhedron, slack: float) -> Contact | Ov
     Returns: None where they do not touch, or along the rim of their faces only.
     """
     normals, gaps = _by_faces(first, second)
-    if gaps.max() > slack:
+    deepest = float(gaps.max())
+    if deepest > slack:
         return None
-    if gaps.max() < -slack:
-        deepest = gaps.max()
+    if abs(deepest) <= RIM * slack and _at_rim(normals[gaps >= -RIM * slack]):
+        return None
+    found = _touching(first, second, normals, gaps, slack)
+    if not found:
         normals, gaps = _by_edges(first, second)
-        widest = gaps.max(initial=deepest)
+        widest = float(gaps.max(initial=deepest))
         if widest > slack:
             return None
         if widest < -slack:
-            return Overlap(float(-widest))
-    elif abs(gaps.max()) <= RIM * slack and _at_rim(normals[gaps >= -RIM * slack]):
-        return None
+            return Overlap(-widest)
+        # Where planes of faces part them, too, edges along each other are their rims.
+        found = _touching(first, second, normals, gaps, slack, rims=deepest < -slack)
+    return max(found, key=lambda each: _extent(each.points), default=None)
+
+
+def _touching(
+    first: Polyhedron,
+    second: Polyhedron,
+    normals: Array,
+    gaps: Array,
+    slack: float,
+    *,
+    rims: bool = True,
+) -> list[Contact]:
+    """Return contacts at planes that part two polyhedra.
+
+    `rims`: Whether two edges that lie along each other are one.
+    """
     found: list[Contact] = []
     tried: list[Array] = []
     for index in np.argsort(-gaps).tolist():
@@ -71,10 +90,10 @@ def contact(first: Polyhedron, second: Polyhedron, slack: float) -> Contact | Ov
         if any(normals[index] @ other > SAME for other in tried):
             continue
         tried.append(normals[index])
-        points = _common(first, second, normals[index], slack)
+        points = _common(first, second, normals[index], slack, rims=rims)
         if points is not None:
             found.append(Contact(points, normals[index], float(gaps[index])))
-    return max(found, key=lambda each: _extent(each.points), default=None)
+    return found
 
 
 def _at_rim(normals: Array) -> bool:
@@ -113,10 +132,13 @@ def _by_edges(first: Polyhedron, second: Polyhedron) -> tuple[Array, Array]:
     return normals, gaps
 
 
-def _common(first: Polyhedron, second: Polyhedron, normal: Array, slack: float) -> Array | None:
+def _common(
+    first: Polyhedron, second: Polyhedron, normal: Array, slack: float, *, rims: bool
+) -> Array | None:
     """Return what is common to the parts of two polyhedra that lie at a plane between them.
 
-    None where it has fewer dimensions than both parts: they meet at a rim.
+    `rims`: As of `_touching`.
+    Returns: None where it has fewer dimensions than both parts: they meet at a rim.
     """
     heights, beyond = first.corners @ normal, second.corners @ normal
     high, low = heights.max(), beyond.min()
@@ -130,6 +152,8 @@ def _common(first: Polyhedron, second: Polyhedron, normal: Array, slack: float) 
         crossing = len(ours) == len(theirs) == 2 and len(shared) == 1
         if not (crossing and _cross(ours, theirs)):
             return None
+    elif len(ours) == len(theirs) == 2 and not rims:
+        return None
     if needed == 3 and _is_narrow(shared, slack):
         return None
     return np.array(shared).reshape(-1, 2) @ across + (high + low) / 2 * normal
