@@ -182,17 +182,30 @@ def test_hinges_that_have_just_formed_are_no_fall() -> None:
     assert check(replace(displaced_at(problem, path, 0.018), moves=())).proved
 
 
-@pytest.mark.parametrize("turn", [60.0, 36000.0])
-def test_a_support_that_turns_tips_a_block(turn: float) -> None:
-    """When the centre is above the edge, however fast it turns as the parameter grows."""
+def turned(turn: float) -> tuple[Any, float]:
+    """A block on a base that turns [deg/m], and how far until its centre is over an edge."""
     base = {"id": "base", "vertices": [[-2, -1], [3, -1], [3, 0], [-2, 0]], "fixed": True}
     block = {"id": "block", "vertices": [[0, 0], [1, 0], [1, 2], [0, 2]]}
     moves = [{"block": "base", "direction": [0, 0], "turn_deg": turn}]
     problem = structure_of({"friction": "inf", "blocks": [base, block], "move": moves})
-    tips = math.degrees(math.atan(0.5)) / turn
+    return problem, math.degrees(math.atan(0.5)) / turn
+
+
+@pytest.mark.parametrize("turn", [60.0, 36000.0])
+def test_a_support_that_turns_tips_a_block(turn: float) -> None:
+    """However fast it turns as the parameter grows."""
+    problem, tips = turned(turn)
     assert bracket(problem, over="spread", method="limit").limit == pytest.approx(
         tips, rel=1e-8
     )
+
+
+@pytest.mark.parametrize("method", ["limit", "direct", "pymunk", "pybullet", "mujoco"])
+def test_engines_see_a_fall_that_supports_brought_about(method: str) -> None:
+    """It lies farther beyond its limit than they are exact."""
+    problem, tips = turned(30.0)
+    for share, verdict in ((0.97, Verdict.STANDS), (1.03, Verdict.COLLAPSES)):
+        assert check(spread_by(problem, share * tips), method=method).verdict is verdict
 
 
 SPREADING = (

@@ -36,6 +36,8 @@ FALLS = {"snaps", "collapse", "falls-slides", "falls-parts", "falls-meets"}
 """Events in which blocks move on supports at rest."""
 PUSH = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3)
 """How far beyond an event it is looked at, the first that tells [size]."""
+CLEAR = 1e-2
+"""How far beyond a collapse blocks are looked at that have fallen, at most [size]."""
 WAY = 5e-3
 """Way of the fastest corner in one step of a fall [size]."""
 FALLEN = 0.2
@@ -144,12 +146,12 @@ def follow(problem: Problem, highest: float, steps: int = 100) -> Path:
 def displaced_at(problem: Problem, path: Path, value: float) -> Problem:
     """Return a problem as it lies where the supports have moved so far.
 
-    Contacts that are open are none. Beyond a collapse it is the problem as it begins to fall;
-    beyond another end of the path the last hinges go on.
+    Contacts that are open are none. Beyond a collapse it is the problem as it begins to fall,
+    so far on that engines see it, too; beyond another end of the path the last hinges go on.
     """
     blocks = Displaced(problem)
     if value > path.value and path.falls_for_good:
-        return blocks.problem(blocks.held(_beyond(blocks, path.frames[-1])))
+        return blocks.problem(blocks.held(_clearly(blocks, path.frames[-1], value)))
     before = [each for each in path.frames if each.value <= value]
     # As built all contacts are closed.
     last = before[-1] if before and value > 0 else path.frames[0]
@@ -227,6 +229,21 @@ def _beyond(blocks: Displaced, frame: Frame) -> Frame:
         # Where they cannot follow it is -1.
         if blocks.margin(now) < -10 * ENOUGH:
             break
+    return now
+
+
+def _clearly(blocks: Displaced, frame: Frame, value: float) -> Frame:
+    """Carry blocks that fall on, up to a value, while ever more force is lacking."""
+    now = _beyond(blocks, frame)
+    lacking = blocks.margin(now)
+    for push in (*PUSH, CLEAR):
+        ahead = blocks.carried(frame, min(frame.value + push * blocks.size, value))
+        if ahead.value < now.value:
+            continue
+        margin = blocks.margin(ahead) if blocks.fit(ahead) else math.inf
+        if margin > lacking or blocks.closing(ahead) < 0 or blocks.room(ahead) < 0:
+            break
+        now, lacking = ahead, margin
     return now
 
 
