@@ -781,3 +781,21 @@ def test_edges_that_cross_touch_whatever_the_slack() -> None:
             )
             assert isinstance(found, Contact)
             assert found.gap == pytest.approx(0.0, abs=slack)
+
+
+@pytest.mark.parametrize("tolerance", [None, 0.002])
+def test_rims_that_rounding_crosses_are_no_joint(tolerance: float | None) -> None:
+    """A wall turned in space has the joints that it had, whatever its last decimals."""
+    wall = ReturnWall(friction=0.7).problem().assembly
+    turn = transform.Rotation.from_euler("xyz", [0.3, 0.2, 0.7])
+    solids = [
+        Solid(
+            parts=tuple(
+                (2 * turn.apply(np.array(hull.corners))).round(6) for hull in block.hulls
+            ),
+            fixed=at >= len(wall.blocks),
+        )
+        for at, block in enumerate((*wall.blocks, *wall.supports))
+    ]
+    found = blocksim.assembly_in_space(solids, tolerance=tolerance)
+    assert len(found.joints) == len(wall.joints)

@@ -17,6 +17,8 @@ PARALLEL = 1e-9
 """Sine of the angle below which two edges have one direction."""
 RIM = 0.01
 """Share of the slack by which bodies that touch exactly may be apart, or within each other."""
+RIMS = 4.0
+"""Slacks to the side up to which edges that cross are rims of faces along each other."""
 ALONG = 0.999
 """Cosine below which planes cross: what is within two of them is narrower than the slack."""
 
@@ -63,8 +65,7 @@ def contact(first: Polyhedron, second: Polyhedron, slack: float) -> Contact | Ov
             return None
         if widest < -slack:
             return Overlap(-widest)
-        # Where planes of faces part them, too, edges along each other are their rims.
-        found = _touching(first, second, normals, gaps, slack, rims=deepest < -slack)
+        found = _touching(first, second, normals, gaps, slack, deep=deepest < -slack)
     return max(found, key=lambda each: _extent(each.points), default=None)
 
 
@@ -75,11 +76,12 @@ def _touching(
     gaps: Array,
     slack: float,
     *,
-    rims: bool = True,
+    deep: bool = False,
 ) -> list[Contact]:
     """Return contacts at planes that part two polyhedra.
 
-    `rims`: Whether two edges that lie along each other are one.
+    `deep`: Whether no plane of a face parts them. Else edges that lie along each other are rims
+        of faces.
     """
     found: list[Contact] = []
     tried: list[Array] = []
@@ -90,7 +92,7 @@ def _touching(
         if any(normals[index] @ other > SAME for other in tried):
             continue
         tried.append(normals[index])
-        points = _common(first, second, normals[index], slack, rims=rims)
+        points = _common(first, second, normals[index], slack, deep=deep)
         if points is not None:
             found.append(Contact(points, normals[index], float(gaps[index])))
     return found
@@ -133,11 +135,11 @@ def _by_edges(first: Polyhedron, second: Polyhedron) -> tuple[Array, Array]:
 
 
 def _common(
-    first: Polyhedron, second: Polyhedron, normal: Array, slack: float, *, rims: bool
+    first: Polyhedron, second: Polyhedron, normal: Array, slack: float, *, deep: bool
 ) -> Array | None:
     """Return what is common to the parts of two polyhedra that lie at a plane between them.
 
-    `rims`: As of `_touching`.
+    `deep`: As of `_touching`.
     Returns: None where it has fewer dimensions than both parts: they meet at a rim.
     """
     heights, beyond = first.corners @ normal, second.corners @ normal
@@ -145,14 +147,14 @@ def _common(
     across = frame(normal)
     ours = _outline(first.corners[heights >= high - 2 * slack] @ across.T)
     theirs = _outline(second.corners[beyond <= low + 2 * slack] @ across.T)
-    shared = _clipped(ours, theirs, slack)
+    shared = _clipped(ours, theirs, slack, 0.0 if deep else RIMS * slack)
     needed = min(len(ours), len(theirs), 3)
     if len(shared) < needed:
         # Two edges that cross share a point.
         crossing = len(ours) == len(theirs) == 2 and len(shared) == 1
         if not (crossing and _cross(ours, theirs)):
             return None
-    elif len(ours) == len(theirs) == 2 and not rims:
+    elif len(ours) == len(theirs) == 2 and not deep:
         return None
     if needed == 3 and _is_narrow(shared, slack):
         return None
@@ -197,10 +199,12 @@ def _turn(a: Spot, b: Spot, c: Spot) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def _clipped(ours: list[Spot], theirs: list[Spot], slack: float) -> list[Spot]:
+def _clipped(ours: list[Spot], theirs: list[Spot], slack: float, aside: float) -> list[Spot]:
     """Return what a point, segment or convex polygon has in common with another.
 
     Sutherland and Hodgman 1974. Points nearer than `slack` are one.
+
+    `aside`: How far the shorter of segments that cross has to go to the side of the other [m].
     """
     if len(theirs) < 3 <= len(ours):
         ours, theirs = theirs, ours
@@ -209,7 +213,7 @@ def _clipped(ours: list[Spot], theirs: list[Spot], slack: float) -> list[Spot]:
         for start, end in zip(theirs, theirs[1:] + theirs[:1], strict=True):
             kept = _inside(kept, start, end, slack)
     elif len(theirs) == 2 and len(kept) == 2:
-        kept = _segments(np.array(kept), np.array(theirs), slack)
+        kept = _segments(np.array(kept), np.array(theirs), slack, aside)
     else:
         # A corner on a corner, or on an edge, has no plane of its own.
         kept = []
@@ -242,7 +246,7 @@ def _inside(kept: list[Spot], start: Spot, end: Spot, slack: float) -> list[Spot
     return found
 
 
-def _segments(ours: Array, theirs: Array, slack: float) -> list[Spot]:
+def _segments(ours: Array, theirs: Array, slack: float, aside: float) -> list[Spot]:
     """Return what two segments have in common: a point where they cross, or a piece."""
     along = ours[1] - ours[0]
     long = float(np.hypot(*along))
@@ -252,11 +256,13 @@ def _segments(ours: Array, theirs: Array, slack: float) -> list[Spot]:
     at = (theirs - ours[0]) @ along
     if np.abs(off).max() <= slack:
         low, high = max(0.0, at.min()), min(long, at.max())
-        return _spots(ours[0] + np.outer([low, high], along)) if high > low else []
+        return _spots(ours[0] + np.outer([low, high], along)) if high > low + slack else []
     if off[0] * off[1] >= 0:
         return []
     place = at[0] + off[0] / (off[0] - off[1]) * (at[1] - at[0])
-    return _spots((ours[0] + place * along)[None]) if slack < place < long - slack else []
+    far = abs(off[1] - off[0]) * min(1.0, long / math.dist(*_spots(theirs)))
+    crosses = far > aside and 0 < place < long
+    return _spots((ours[0] + place * along)[None]) if crosses else []
 
 
 def _cross(ours: list[Spot], theirs: list[Spot]) -> bool:
