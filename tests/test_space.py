@@ -260,6 +260,23 @@ def test_no_answer_changes_as_blocks_are_turned_scaled_mirrored_renumbered(
         assert first == pytest.approx(second, rel=1e-5, abs=1e-7)
 
 
+def test_thin_slabs_on_a_slope_need_the_friction_of_its_tangent() -> None:
+    """Without friction the solver finds forces that leave a tenth of a weight over."""
+    slabs = Tower(
+        blocks=2,
+        length=0.0184,
+        width=0.0125,
+        height=0.000184,
+        offset=0.000368,
+        turn_deg=-101.123,
+        friction=5.0,
+    )
+    problem = replace(slabs.problem(), azimuth=math.radians(147.93857629856325))
+    found = blocksim.bracket(problem.tilted(math.radians(6.0)), over="mu")
+    assert found.limit == pytest.approx(math.tan(math.radians(6.0)), rel=1e-6)
+    assert found.confirmed
+
+
 @pytest.mark.parametrize("azimuth", [0, 25, 90, 200])
 @pytest.mark.parametrize("mu", [0.2, 2.0])
 def test_a_block_slides_or_topples_on_a_table_tilted_towards_any_azimuth(

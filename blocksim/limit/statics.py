@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, cast, overload
 
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.assembly import SpatialAssembly
@@ -15,6 +15,9 @@ from blocksim.limit.programme import equilibrium as equilibrium_in_plane
 if TYPE_CHECKING:
     from blocksim.limit.programme import Equilibrium
     from blocksim.limit.space import SpatialEquilibrium
+
+LEFT = 1e-6
+"""Of each block's own weight: forces left over that are no round-off."""
 
 
 @overload
@@ -91,12 +94,16 @@ def collapse(problem: Problem[Any], *, reduce: bool = True) -> Collapse:
 def standing_margin(problem: Problem[Any]) -> float:
     """Return a number that is below 0 where blocks fall: how far, without a unit.
 
-    The margin of `equilibrium`; of blocks that crush the share of the strength that is left.
+    The margin of `equilibrium`, -1 where forces that press leave blocks out of balance; of
+    blocks that crush the share of the strength that is left.
     """
     if not problem.in_space and problem.strength is not None:
         needed = strength_needed(problem)
         return -math.inf if needed is None else 1 - needed.high / problem.strength
-    return equilibrium(problem).margin
+    found = equilibrium(problem)
+    if problem.in_space and found.margin > 0 and cast("SpatialEquilibrium", found).gap > LEFT:
+        return -1.0
+    return found.margin
 
 
 def exists(problem: Problem[Any]) -> bool | None:
