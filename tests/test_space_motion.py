@@ -341,6 +341,22 @@ def test_blocks_that_hit_at_their_corners_hit_wherever_in_a_step_they_do(share: 
     assert stepping._velocities[0, 0] == pytest.approx(-taken, rel=0.18)
 
 
+@pytest.mark.parametrize(("wide", "height"), [(0.002, 2.0), (0.01, 2.3)])
+def test_what_falls_fast_does_not_pass_through_a_thin_plate(wide: float, height: float) -> None:
+    """A bar on a plate as thick as it is, both far thinner than the way in a step."""
+    drawn = {"floor": [-9, -9, 18, 1], "plate": [-0.5, -wide, 1, wide]}
+    blocks = [
+        {"id": name, "fixed": True, "vertices": known_motions.box(*sides)}
+        for name, sides in drawn.items()
+    ]
+    bar = {"id": "bar", "free": True, "vertices": known_motions.box(0, height, wide, wide)}
+    problem = extruded(blocksim.structure_of({"friction": 0.5, "blocks": [*blocks, bar]}))
+    fall = height / problem.assembly.size
+    recording = blocksim.simulate(problem, method="direct", duration=math.sqrt(2 * fall) + 0.3)
+    way = recording.poses[-1, 0, :3] - recording.poses[0, 0, :3]
+    assert way == pytest.approx([0, 0, -fall], abs=1e-9)
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_edges_meet_where_they_cross(seed: int) -> None:
     """Of two cubes, turned by 45 degrees each: any of four parallel edges was taken."""
