@@ -23,6 +23,7 @@ from blocksim import (
     Mode,
     Problem,
     Verdict,
+    extruded,
     simulate,
     structure_of,
 )
@@ -190,3 +191,37 @@ def test_blocks_let_go_start_neither_early_nor_late() -> None:
             np.interp(level**0.5, each.displacement**0.5, each.times) for each in (seen, truth)
         )
         assert early == pytest.approx(late, rel=1e-3)
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_what_falls_beside_what_it_stood_on_lies_on_the_floor(in_space: bool) -> None:
+    """It lay a thousandth of the size above it."""
+    ledge = {"id": 0, "vertices": [[0, -2], [1, -2], [1, 0], [0, 0]], "fixed": True}
+    corners = [[1.5, -1.2], [2, -1.2], [2, -0.7], [1.5, -0.7]]
+    cube = {"id": 1, "vertices": corners, "free": True}
+    problem = structure_of({"friction": 0.5, "blocks": [ledge, cube]})
+    problem = extruded(problem) if in_space else problem
+    size = problem.assembly.size
+    fell = simulate(problem, method="pybullet", duration=math.sqrt(1.6 / size) + 0.5)
+    way = fell.poses[-1, 0] - fell.poses[0, 0]
+    assert way[2 if in_space else 1] * size == pytest.approx(-0.8, abs=3e-6)
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_recording_tells_how_deep_a_corner_is_in_the_ground(seed: int) -> None:
+    """Bullet rounds corners of hulls, and knows only of overlap beyond that."""
+    draw = np.random.default_rng(seed)
+    turn = np.sort(draw.uniform(0, 2 * math.pi, 7))
+    corners = np.stack([np.cos(turn), 0.7 * np.sin(turn)], axis=1)
+    corners[:, 1] += 0.3 - corners[:, 1].min()
+    ground = {"id": 0, "fixed": True, "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]]}
+    stone = {"id": 1, "vertices": corners.tolist(), "free": True}
+    problem = structure_of({"friction": 0.6, "size": 1, "blocks": [ground, stone]})
+    fell = simulate(problem, method="pybullet", duration=2.0)
+    arms = corners - problem.assembly.centres[0]
+    lowest = min(
+        float((y + arms @ [math.sin(turned), math.cos(turned)]).min())
+        for _, y, turned in fell.poses[:, 0]
+    )
+    assert fell.quality.penetration is not None
+    assert 0 < -lowest < fell.quality.penetration

@@ -20,7 +20,7 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.engines.base import Quality, Settings
 from blocksim.engines.boxes import unwound
-from blocksim.engines.bulletspace import SLOP, Space
+from blocksim.engines.bulletspace import OFF, SLOP, Space
 from blocksim.engines.energy import later
 
 if TYPE_CHECKING:
@@ -223,7 +223,8 @@ class Moving:
         for _ in range(parts - 1):
             self._step()
         self._rate = self._last_step() / step
-        self._deepest = max(self._deepest, self._space.overlap())
+        off = OFF * 2 * float(self._parts.reach.max())
+        self._deepest = max(self._deepest, self._space.overlap() + off)
         self._parts.flatten(self._space, self._bodies)
 
     def _last_step(self) -> Array:

@@ -34,6 +34,11 @@ SLOP = 1e-6
 KNOW_FACES = 4096
 """Bullet's flag by which hulls meet by their faces, with all points of contact at once and
 without the margin that else rounds their corners; pybullet gives it no name."""
+ABOVE_PLANE = 1e-3
+"""How far above a plane Bullet keeps hulls: the margin that pybullet gives them."""
+OFF = 1e-4
+"""By what share of a hull's extent its corners may be off, at most: Bullet rounds them to
+1 / 10216 of it."""
 NOTHING = (0.0, 0.0, 0.0)
 
 
@@ -224,7 +229,8 @@ class Space:
     def floor(self, share: float, built: State, upwards: list[float]) -> int:
         """Create a level floor through a place, with its share of a friction."""
         shape: int = self._client.createCollisionShape(bullet.GEOM_PLANE, planeNormal=upwards)
-        return self._solid(shape, share, built, None)
+        low = np.array(built.place) - ABOVE_PLANE * np.array(upwards)
+        return self._solid(shape, share, built._replace(place=low.tolist()), None)
 
     def _solid(self, shape: int, share: float, built: State, masses: list[float] | None) -> int:
         # Without maximal coordinates Bullet would push blocks that overlap apart.
