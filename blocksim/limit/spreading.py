@@ -167,8 +167,9 @@ def _first_event(
         what, found = "moves", _where(blocks, blocks.closing, frame, ahead)
     if blocks.margin(found) < -ENOUGH:
         # Where hinges have just formed none of their force is left.
+        least = -ENOUGH if blocks.margin(frame) < ENOUGH else 0.0
         what = "snaps"
-        found = _where(blocks, lambda each: blocks.margin(each) + ENOUGH, frame, found)
+        found = _where(blocks, lambda each: blocks.margin(each) - least, frame, found)
     if blocks.room(found) < 0:
         return "meets", _where(blocks, blocks.room, frame, found)
     return what, blocks.shut(found) if what == "moves" else found
